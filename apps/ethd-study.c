@@ -25,14 +25,18 @@ static const char doc[] =
     "With \"[validity] by = paper\" a tap counts if the ring met the wall at the commanded speed. With \"by = finger\" "
     "it counts if the hand had that speed and the finger didn't come before the ring, which suits laws that stop the "
     "ring before the wall; the columns v_hand_mps, touch_depth_m and eps_felt_m show both for any tap.\n\n"
-    "With --ask these lines are read on stdin: note WORDS, pause, go, abort (this participant), undo (the last abort), "
-    "stop; ack, for a device that has stopped itself; and the survey's answers, which are kept one by one, and back, "
+    "With --ask these lines are read on stdin: note WORDS, accept WORDS and reject WORDS (the latest tap), pause, go, "
+    "abort (this "
+    "participant), undo (the last abort, accept or reject), stop; ack, for a device that has stopped itself; and the "
+    "survey's answers, which are kept one by one, and back, "
     "which returns to the question before.\n\n"
     "The study file holds questions of your own (\"[survey]\", numbered answers or q1_answers = text), consent and "
     "instruction (\"[pages]\"), and whatever else the screen says in your language (\"[words]\": --words prints the "
     "phrases by their names).\n\n"
     "A participant who withdraws or is excluded stays on record with the reason, in participants.csv, and leaves the "
-    "analysis, as one who aborted does.\n\n"
+    "analysis, as one who aborted does. A valid tap that the experimenter rejects, at the screen or later by --reject, "
+    "doesn't count either; another one is then due. taps.csv says which taps were accepted and rejected, events.csv "
+    "why.\n\n"
     "Examples:\n"
     "  ethd-study --plan my.study    (who gets what when, and how balanced that is)\n"
     "  ethd-study --words >>my.study    (then translate what is behind each =)\n"
@@ -44,6 +48,7 @@ static const char doc[] =
     "  ethd-study --merge station-a station-b --out both\n"
     "  ethd-study --resume session\n"
     "  ethd-study --resume session --exclude 2 --reason \"was told another task\"\n"
+    "  ethd-study --resume session --reject P01-02-004 --reason \"the hand slipped\"\n"
     "  ethd-study --export session\n"
     "  ethd-study --verify session\n"
     "  ethd-study --describe session --out facts    (study.json, for programs)\n"
@@ -70,6 +75,8 @@ enum {
   OPTION_WITHDRAW,
   OPTION_EXCLUDE,
   OPTION_INCLUDE,
+  OPTION_ACCEPT,
+  OPTION_REJECT,
   OPTION_REASON
 };
 
@@ -98,7 +105,10 @@ static const struct argp_option options[] = {
     {"exclude", OPTION_EXCLUDE, "K", 0, "with --resume: take participant K out of the analysis, and end", 1},
     {"include", OPTION_INCLUDE, "K", 0,
      "with --resume: take participant K back into the analysis, and to the missing taps, and end", 1},
-    {"reason", OPTION_REASON, "WORDS", 0, "why a participant is withdrawn, excluded or included", 1},
+    {"reject", OPTION_REJECT, "TAP", 0,
+     "with --resume: write down that a valid tap, such as P01-02-004, doesn't count, and end", 1},
+    {"accept", OPTION_ACCEPT, "TAP", 0, "with --resume: write down that it does, and end", 1},
+    {"reason", OPTION_REASON, "WORDS", 0, "why", 1},
     {"simulate", OPTION_SIMULATE, "N", 0, "simulate N participants at every point of the study's [grid]", 2},
     {"shard", OPTION_SHARD, "I/N", 0, "simulate only this share (1/1)", 2},
     {"ticks", OPTION_TICKS, NULL, 0, "record every tick of a simulation, 300 kB a tap", 2},
@@ -139,9 +149,18 @@ static void parse_participant(const char *text) {
 }
 
 static void decide(const char *option, const char *decision, const char *text) {
-  if (arg.decision) ethd__fail(ETHD_EXIT_INPUT, "%s: one of --withdraw, --exclude and --include is allowed", option);
+  if (arg.decision) ethd__fail(ETHD_EXIT_INPUT, "%s: one decision at a time is allowed", option);
   arg.decision = decision;
-  arg.decided = ethd__option_integer(option, text, 1, ETHD_STUDY_SESSION_PEOPLE);
+  if (strcmp(decision, "accept") && strcmp(decision, "reject")) {
+    arg.decided.participant = (uint32_t)ethd__option_integer(option, text, 1, ETHD_STUDY_SESSION_PEOPLE);
+    return;
+  }
+  char rest;
+  ethd__about *tap = &arg.decided;
+  if (sscanf(text, "P%5u-%2zu-%7u%c", &tap->participant, &tap->block, &tap->attempt, &rest) != 3 || !tap->participant ||
+      !tap->block || !tap->attempt)
+    ethd__fail(ETHD_EXIT_INPUT, "%s: found \"%.40s\", participant, block and attempt as in P01-02-004 are allowed",
+               option, text);
 }
 
 /* What goes with what. */
@@ -162,7 +181,7 @@ static void check_options(struct argp_state *state) {
   if (arg.simulate && (!arg.out || arg.ask || arg.first))
     argp_error(state, "--simulate needs --out DIR, and has nobody to ask or choose");
   if (!arg.decision != !arg.reason || (arg.decision && !arg.resume))
-    argp_error(state, "--withdraw, --exclude and --include need --resume DIR and --reason WORDS");
+    argp_error(state, "--withdraw, --exclude, --include, --accept and --reject need --resume DIR and --reason WORDS");
 }
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -188,6 +207,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_WITHDRAW: decide("--withdraw", "withdraw", text); return 0;
   case OPTION_EXCLUDE: decide("--exclude", "exclude", text); return 0;
   case OPTION_INCLUDE: decide("--include", "include", text); return 0;
+  case OPTION_ACCEPT: decide("--accept", "accept", text); return 0;
+  case OPTION_REJECT: decide("--reject", "reject", text); return 0;
   case OPTION_REASON: arg.reason = text; return 0;
   case ARGP_KEY_ARG:
     if (arg.word_count == ETHD_STUDY_STATIONS) argp_error(state, "over %d folders", ETHD_STUDY_STATIONS);

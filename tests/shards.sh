@@ -23,7 +23,7 @@ simulate() { "$study" "$folder/grid.study" --simulate $people "$@"; }
 simulate --out "$folder/one" >"$folder/out" 2>&1 && "$study" --merge "$folder/one" >>"$folder/out" 2>&1 || fail "one worker: $(cat "$folder/out")"
 same() { cmp "$folder/one/taps.csv" "$folder/$1/taps.csv" || fail "$1 has other bytes than one worker"; }
 [ "$(cut -d, -f2,3 "$folder/one/taps.csv" | sort -u | wc -l)" = $((4 * people + 1)) ] || fail "not $people people at 4 points"
-head -n 1 "$folder/one/taps.csv" | grep -q '^study,point,participant,.*,commanded_mps,.*,utc,by_ring,by_finger,contact.k_e,transition.b_d$' || fail "the header"
+head -n 1 "$folder/one/taps.csv" | grep -q '^study,point,participant,.*,commanded_mps,.*,utc,by_ring,by_finger,checked,contact.k_e,transition.b_d$' || fail "the header"
 
 # Each row's gains are those that it names; a strategy without such a gain has none.
 [ "$(awk -F, '$2 == 0 || $2 == 1 { print $3, $4, $6, $7, $8, $13 }' "$folder/one/taps.csv" | grep smooth | sort | uniq -c | awk '$1 != 2' | wc -l)" = 0 ] ||

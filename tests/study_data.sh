@@ -72,6 +72,7 @@ for rows in "UPDATE tap SET participant = 9 WHERE id = 1" "UPDATE tap SET attemp
   "UPDATE tap SET block = 'x' WHERE id = 2" "UPDATE tap SET point = 1 WHERE id = 1" "INSERT INTO answer VALUES (1, 2, 9, 1, NULL)" \
   "INSERT INTO answer VALUES (1, 2, 1, 6, NULL)" "INSERT INTO answer VALUES (9, 2, 1, 1, NULL)" "INSERT INTO survey (participant, block) VALUES (1, 99)" \
   "INSERT INTO event (utc, participant, event, detail) VALUES ('', 77, 'abort', '')" \
+  "INSERT INTO event (utc, participant, block, attempt, event, detail) VALUES ('', 1, 2, 99, 'reject', '')" \
   "INSERT INTO hand VALUES ('mouse'); UPDATE tap SET hand = 'mouse' WHERE id = 1"; do
   copy
   sql "$folder/bad/study.sqlite" "$rows"
@@ -178,7 +179,7 @@ refuse 2 'SHA256SUMS: No such file' "$study" --merge "$folder/station1" "$folder
 
 # ---- own words: printed as they can be read again; unknown names, places and letters are refused ----
 "$study" --words >"$folder/words.study" && "$study" "$folder/words.study" --plan >"$folder/out" 2>&1 || fail "--words: $(cat "$folder/out")"
-[ "$(wc -l <"$folder/words.study")" = 40 ] && grep -q '^keys_thanks = Space ends$' "$folder/words.study" || fail "--words: $(cat "$folder/words.study")"
+[ "$(wc -l <"$folder/words.study")" = 45 ] && grep -q '^keys_thanks = Space ends$' "$folder/words.study" || fail "--words: $(cat "$folder/words.study")"
 words() { # SECTION LINE PATTERN
   printf '[study]\nsurvey = on\n[%s]\n%b\n' "$1" "$2" >"$folder/own.study"
   refuse 2 "own.study:4: $1.$3" "$study" "$folder/own.study" --plan
@@ -242,7 +243,7 @@ END
 "$python3" - "$folder/whole" "$folder/paper" <<'END' || fail "the sidecars"
 import csv, json, pathlib, sys
 units = {"_m": "m", "_mps": "m/s", "_s": "s", "_ms": "ms", "_n": "N"}
-words = {"part", "transition", "speed", "valid", "reason", "hand", "by_ring", "by_finger", "event", "status", "analysed"}
+words = {"part", "transition", "speed", "valid", "reason", "hand", "by_ring", "by_finger", "event", "status", "analysed", "checked"}
 for folder in map(pathlib.Path, sys.argv[1:]):
     tables = sorted(folder.glob("*.csv"))
     names = {t.stem for t in tables if not t.stem.startswith("shard")}

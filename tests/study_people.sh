@@ -128,9 +128,40 @@ printf 'yes\nabort\nundo\nP2\nP02\nno\nP03\nyes\n' | "$study" "$folder/undo.stud
 grep -q 'found "P2"; P02 or stop is allowed' "$folder/out" || fail "another number: $(cat "$folder/out")"
 grep -q 'next is P01: the experimenter types P01' "$folder/out" || fail "the undone isn't next: $(cat "$folder/out")"
 "$study" --resume "$folder/undo" --virtual --ask >"$folder/out" 2>"$folder/err" </dev/null || fail "the undone: $(cat "$folder/out" "$folder/err")"
-[ "$(awk -F, 'NR > 1 && $2 != "" { printf "%s %s,", $2, $4 }' "$folder/undo/events.csv")" = 'P01 consent,P01 abort,P01 undo,P02 refuse,P03 consent,' ] || fail "undo: $(cat "$folder/undo/events.csv")"
+[ "$(awk -F, 'NR > 1 && $2 != "" { printf "%s %s,", $2, $5 }' "$folder/undo/events.csv")" = 'P01 consent,P01 abort,P01 undo,P02 refuse,P03 consent,' ] || fail "undo: $(cat "$folder/undo/events.csv")"
 [ "$(cut -d, -f1-3 "$folder/undo/participants.csv" | tail -n +2 | tr '\n' ' ')" = 'P01,complete,1 P02,refused,0 P03,complete,1 ' ] || fail "undone: $(cat "$folder/undo/participants.csv")"
 [ "$(cut -d, -f1 "$folder/undo/taps.csv" | tail -n +2 | tr '\n' ' ')" = 'P03 P01 ' ] || fail "taps of the undone: $(cat "$folder/undo/taps.csv")"
+
+# ---- the experimenter rejects a tap, undoes it, and accepts one; what is rejected is made again; later decisions too ----
+printf '[study]\nparticipants = 1\nstrategies = smooth\nspeeds = 0.2\ntraining = 0\ntaps = 2\nattempts = 30\n[device]\nconfig = device.ini\n[hand]\nsource = people\n' >"$folder/check.study"
+talk 'tap ' 'pause\nreject a\nundo\naccept b, "c"\nreject d\ngo' "$study" "$folder/check.study" --out "$folder/check" --ask
+grep -q 'tap  .: rejected .* accepted: 0, rejected: 1$' "$folder/out" && grep -q 'tap  .: accepted .* accepted: 1, rejected: 0$' "$folder/out" || fail "checked: $(cat "$folder/out" "$folder/err")"
+[ "$(awk -F, '$5 ~ /ject|check|accept/ { printf "%s %s,", $5, $6 }' "$folder/check/events.csv")" = 'reject a,uncheck ,accept "b,reject d,' ] || fail "the checks: $(cat "$folder/check/events.csv")"
+counted() { # VALID ACCEPTED REJECTED of P01; and so many rows of each in taps.csv
+  [ "$(awk -F, 'NR > 1 { print $7, $8, $9 }' "$folder/check/participants.csv")" = "$1 $2 $3" ] &&
+    [ "$(awk -F, '$31 == "rejected"' "$folder/check/taps.csv" | wc -l)" = "$3" ] && [ "$(awk -F, '$31 == "accepted"' "$folder/check/taps.csv" | wc -l)" = "$2" ] ||
+    fail "not $*: $(cat "$folder/check/participants.csv" "$folder/check/taps.csv")"
+}
+counted 2 0 1
+[ "$(awk -F, '$31 == "rejected" && $9 && $10 == "ok"' "$folder/check/taps.csv" | wc -l)" = 1 ] || fail "a rejected tap's own verdict: $(cat "$folder/check/taps.csv")"
+last=$(awk -F, 'END { print $4 }' "$folder/check/taps.csv")
+decide() { "$study" --resume "$folder/check" "$@" >"$folder/out" 2>"$folder/err" || fail "$*: $(cat "$folder/err")"; }
+decide --reject "P01-01-00$last" --reason 'seen in the plot'
+counted 1 0 2
+decide --virtual --quiet
+counted 2 0 2
+[ "$(awk -F, 'END { print $4 }' "$folder/check/taps.csv")" = $((last + 1)) ] || fail "no tap more: $(cat "$folder/check/taps.csv")"
+decide --accept "P01-01-00$last" --reason 'it was good'
+counted 3 1 1
+"$study" --verify "$folder/check" >"$folder/out" 2>&1 || fail "sums after a decision: $(cat "$folder/out")"
+for bad in 'P01-01-029:the tap isn.t in this session' 'P01-01:found "P01-01", participant, block and attempt as in P01-02-004'; do
+  "$study" --resume "$folder/check" --reject "${bad%%:*}" --reason x >"$folder/out" 2>"$folder/err"
+  [ $? = 2 ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q "${bad#*:}" "$folder/err" || fail "$bad: $(cat "$folder/err")"
+done
+if command -v gnuplot >/dev/null; then
+  "$BUILD/bin/ethd-report" "$folder/check" >"$folder/out" 2>&1 && grep -q '3 test taps, 3 of them valid, 1 accepted by the experimenter, 1 rejected and left out, in' "$folder/check/report/report.html" ||
+    fail "the report of checked taps: $(cat "$folder/out") $(grep -o '[0-9]* test taps[^;]*' "$folder/check/report/report.html")"
+fi
 
 # ---- a finger that never leaves the start line makes no tap, and uses up no attempt ----
 device still.ini 'speed = 0.001\nplant = still.plant\n'

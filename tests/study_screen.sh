@@ -113,7 +113,7 @@ def surveyed(before):
     mine = ask(f"select valid from tap where block = {before + 1} order by id")
     if not (mine and (mine[-1][0] == 1 or len(mine) == 2)): return False
     time.sleep(0.5)
-    for name in "4 4 Return 2 Return BackSpace 3 Return 5 1 5 Return".split(): key(name)
+    for name in "space 4 4 Return 2 Return BackSpace 3 Return 5 1 5 Return".split(): key(name)
     assert count("survey") == before, "three answers without a confirmation"
     key("Return")
     return True
@@ -156,7 +156,7 @@ cat "$folder/out"
 grep -q '^P1\|^P01' "$folder/session/taps.csv" || fail "no tap in its table"
 grep -q ',note,no letter of this is lost$' "$folder/session/events.csv" || fail "no note: $(cat "$folder/session/events.csv")"
 [ "$(grep -c ',4,3,5$' "$folder/session/survey.csv")" = 2 ] || fail "no answer: $(cat "$folder/session/survey.csv")"
-grep -q ',P01,,consent,$' "$folder/session/events.csv" || fail "no consent: $(cat "$folder/session/events.csv")"
+grep -q ',P01,,,consent,$' "$folder/session/events.csv" || fail "no consent: $(cat "$folder/session/events.csv")"
 grep -q 'window 1280 x 720 px; display 1280 x 720 px' "$folder/session/events.csv" || fail "no screen: $(cat "$folder/session/events.csv")"
 grep -q 'übel' "$folder/session/survey.json" || fail "the survey's sidecar: $(cat "$folder/session/survey.json")"
 awk -F, 'NR > 1 && ($26 != "mouse" || $28 !~ /^20/)' "$folder/session/taps.csv" | grep . && fail "taps without their hand and time"

@@ -126,7 +126,7 @@ def due_of(folder):
     ended = ask(folder, "select (participant, block) in (select participant, block from survey) from tap order by id desc")
     if not counts[0] or (ended and ended[0][0]):
         return "", counts
-    return f"{ANSWERS[0]} Return" if not asked else f"{ANSWERS[1]} Return" if 2 not in asked else "Return", counts
+    return f"space {ANSWERS[0]} Return" if not asked else f"{ANSWERS[1]} Return" if 2 not in asked else "Return", counts
 
 
 def answer(hand, station):

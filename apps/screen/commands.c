@@ -157,9 +157,10 @@ int ethd__command_session(const ethd__study_options *o) {
 
 int ethd__command_decide(const ethd__study_options *o) {
   char message[ETHD_MESSAGE_MAX];
-  check(ethd__session_decide(o->resume, (uint32_t)o->decided - 1, o->decision, o->reason, message), message);
-  printf("%s: participant %lld: %s, %s; participants.csv says so\n", o->resume, (long long)o->decided, o->decision,
-         o->reason);
+  check(ethd__session_decide(o->resume, o->decided, o->decision, o->reason, message), message);
+  printf("%s: participant %u", o->resume, o->decided.participant);
+  if (o->decided.attempt) printf(", block %zu, attempt %u", o->decided.block, o->decided.attempt);
+  printf(": %s, %s; %s says so\n", o->decision, o->reason, o->decided.attempt ? "taps.csv" : "participants.csv");
   return ETHD_EXIT_DONE;
 }
 

@@ -4,15 +4,17 @@
 #define ETHD__APPS_SCREEN_COMMANDS_H
 
 #include "study/shard.h"
+#include "study/sitting.h"
 #include "study/stations.h"
 
 typedef struct ethd__study_options {
   const char *study, *out, *resume, *finger, *merge, *export, *verify, *describe;
-  const char *decision, *reason;             /* withdraw, exclude, include */
+  const char *decision, *reason;             /* withdraw, exclude, include; of a tap: accept, reject */
   const char *word[ETHD_STUDY_STATIONS + 1]; /* that are no options: the study, or further stations */
   size_t word_count;
   int64_t first, last; /* participants, from 1; 0: all */
-  int64_t decided, simulate;
+  ethd__about decided;
+  int64_t simulate;
   ethd__shard shard;
   int width, height; /* px of the screen; 0: none */
   bool ask, quiet, sharded, is_virtual, plan, words, plugins;
@@ -30,7 +32,7 @@ int ethd__command_merge(const ethd__study_options *o);
 /* Writes a folder's tables anew from its store. */
 int ethd__command_export(const ethd__study_options *o);
 
-/* Records a decision about a participant. */
+/* Records a decision about a participant or a tap. */
 int ethd__command_decide(const ethd__study_options *o);
 
 /* Prints the screen's words as a section of a study file. */

@@ -35,15 +35,24 @@ ethd__phrase_name ethd__advice(ethd__reason reason) {
   return advice[reason];
 }
 
-static void verdict(void *self, const char *participant, const ethd__taken *taken, uint32_t valid, uint32_t wanted) {
-  const ethd__console *c = self;
+ethd__phrase_name ethd__advised(ethd__reason reason, const char *checked) {
+  if (!checked) return ethd__advice(reason);
+  return strcmp(checked, "reject") ? ETHD_PHRASE_ACCEPTED : ETHD_PHRASE_REJECTED;
+}
+
+static void verdict(void *self, const char *participant, const ethd__taken *taken, const ethd__tally *tally) {
+  ethd__console *c = self;
   const ethd__metrics *m = &taken->result.metrics;
+  c->good = m->reason == ETHD_TAP_OK;
   if (c->quiet) return;
-  printf("%s tap %2" PRIu32 ": %s", participant, taken->turn.attempt, ethd__phrases[ethd__advice(m->reason)].words);
+  printf("%s tap %2" PRIu32 ": %s", participant, taken->turn.attempt,
+         ethd__phrases[ethd__advised(m->reason, tally->checked)].words);
   if (m->v_rvo == m->v_rvo)
     printf(" (%.3f m/s; %.3g to %.3g count)", m->v_rvo, taken->speed->centre - taken->speed->band,
            taken->speed->centre + taken->speed->band);
-  if (wanted) printf(", %" PRIu32 " of %" PRIu32, valid, wanted);
+  if (tally->wanted) printf(", %" PRIu32 " of %" PRIu32, tally->valid, tally->wanted);
+  if (tally->accepted + tally->rejected)
+    printf("; accepted: %" PRIu32 ", rejected: %" PRIu32, tally->accepted, tally->rejected);
   putchar('\n');
   fflush(stdout);
 }
@@ -77,6 +86,12 @@ static ethd__wish command(ethd__console *c, const char *line, char words[ETHD_ME
     snprintf(words, ETHD_MESSAGE_MAX, "%.*s", ETHD_MESSAGE_MAX - 1, line + 5);
     return ETHD_WISH_NOTE;
   }
+  bool accept = !strncmp(line, "accept ", 7), reject = !strncmp(line, "reject ", 7);
+  if (accept || reject) {
+    if (!c->good) puts("the latest tap doesn't count, so it can't be accepted or rejected");
+    snprintf(words, ETHD_MESSAGE_MAX, "%.*s", ETHD_MESSAGE_MAX - 1, line + 7);
+    return !c->good ? ETHD_WISH_GO : accept ? ETHD_WISH_ACCEPT : ETHD_WISH_REJECT;
+  }
   if (!strcmp(line, "abort")) return ETHD_WISH_ABORT;
   if (!strcmp(line, "undo")) return ETHD_WISH_UNDO;
   if (!strcmp(line, "stop")) return ETHD_WISH_STOP;
@@ -86,13 +101,14 @@ static ethd__wish command(ethd__console *c, const char *line, char words[ETHD_ME
     return ETHD_WISH_PAUSE;
   }
   if (strcmp(line, "go") && strcmp(line, "pause"))
-    printf("found \"%.40s\"; note WORDS, pause, go, abort, undo, stop are allowed\n", line);
+    printf("found \"%.40s\"; note WORDS, accept WORDS, reject WORDS, pause, go, abort, undo, stop are allowed\n", line);
   return ETHD_WISH_GO;
 }
 
-static ethd__wish wish(void *self, char words[ETHD_MESSAGE_MAX]) {
+static ethd__wish wish(void *self, bool over, char words[ETHD_MESSAGE_MAX]) {
   ethd__console *c = self;
   char line[ETHD_MESSAGE_MAX];
+  (void)over;
   if (!c->ask) return ETHD_WISH_GO;
   while (read_line(c, c->paused, line, sizeof line)) {
     ethd__wish wanted = command(c, line, words);

@@ -7,10 +7,14 @@
 /* Returns the phrase that tells the participant how a tap was, and what to do. [any] */
 ethd__phrase_name ethd__advice(ethd__reason reason);
 
+/* Does the same for a tap that the experimenter may have accepted or rejected (study/front.h). [any] */
+ethd__phrase_name ethd__advised(ethd__reason reason, const char *checked);
+
 /* Commands and answers are read when `ask` is set. */
 typedef struct ethd__console {
   const ethd__protocol *protocol;
   bool ask, quiet, ended, paused;
+  bool good; /* the latest tap counts, and so can be accepted or rejected */
 } ethd__console;
 
 ethd__front ethd__console_front(ethd__console *console);

@@ -61,7 +61,7 @@ static void take_front(ethd__screen_place *at, const ethd__place_options *o) {
   at->sitting.front = ethd__screen_front(&at->screen);
   ethd__screen_describe(&at->screen, message);
   char unsaid[ETHD_MESSAGE_MAX];
-  if (ethd__sitting_event(&at->sitting, (ethd__about){0, 0}, "screen", message, unsaid)) {
+  if (ethd__sitting_event(&at->sitting, (ethd__about){0}, "screen", message, unsaid)) {
     close_device(at);
     ethd__fail(ETHD_EXIT_FAILED, "%s", unsaid);
   }

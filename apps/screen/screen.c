@@ -93,7 +93,8 @@ static void block(void *self, const char *participant, const ethd__turn *turn, b
   snprintf(s->title, sizeof s->title, "%s   %s%s%s", participant, part, turn->block.training ? ", " : "",
            turn->block.training ? WORDS(PRACTICE) : "");
   fill(s, ETHD_PHRASE_SPEED, "%.2g", &s->speed.centre, 1, speed, sizeof speed);
-  s->feedback[0] = s->achieved[0] = 0;
+  s->feedback[0] = s->achieved[0] = s->checked[0] = 0;
+  s->good = false;
   ethd__page page = {.title = s->title, .keys = WORDS(KEYS_GO)};
   if (rest) ethd__page_add(&page, ETHD_TEXT_LARGE, WORDS(REST), ethd__green);
   ethd__page_add(&page, ETHD_TEXT_LARGE, WORDS(TASK), ethd__white);
@@ -103,10 +104,10 @@ static void block(void *self, const char *participant, const ethd__turn *turn, b
 
 /* ---- before a tap ---- */
 
-static bool write_note(ethd__screen *s, char words[ETHD_MESSAGE_MAX]) {
+static bool write_words(ethd__screen *s, const char *what, char words[ETHD_MESSAGE_MAX]) {
   ethd__page page = {.title = s->title, .keys = WORDS(KEYS_NOTE)};
   char line[200] = "";
-  ethd__page_add(&page, ETHD_TEXT_LARGE, WORDS(NOTE), ethd__grey);
+  ethd__page_add(&page, ETHD_TEXT_LARGE, what, ethd__grey);
   if (!ethd__screen_type(s, &page, line, sizeof line)) return false;
   snprintf(words, ETHD_MESSAGE_MAX, "%s", line);
   return *line;
@@ -136,13 +137,16 @@ static bool at_start(const ethd__screen *s, waiting *wait) {
   return t - wait->since > STILL;
 }
 
-void ethd__screen_waiting(ethd__screen *s, ethd_vec finger, double seconds) {
-  char keys[400];
-  snprintf(keys, sizeof keys, "%s%s%s", s->device ? WORDS(KEYS_NOW) : "", s->device ? "   " : "", WORDS(KEYS_WAIT));
+void ethd__screen_waiting(ethd__screen *s, bool over, ethd_vec finger, double seconds) {
+  const char *now = over ? WORDS(KEYS_GO) : s->device ? WORDS(KEYS_NOW) : "", *check = s->good ? WORDS(KEYS_CHECK) : "";
+  char keys[800];
+  snprintf(keys, sizeof keys, "%s%s%s%s%s", now, *now ? "   " : "", check, *check ? "   " : "",
+           over ? "" : WORDS(KEYS_WAIT));
   ethd__page page = {.title = s->title, .keys = keys, .below = ethd__draw_floor(s)};
   ethd__page_add(&page, ETHD_TEXT_LARGE, s->feedback, s->good ? ethd__green : ethd__red);
   ethd__page_add(&page, ETHD_TEXT_SMALL, s->achieved, s->good ? ethd__green : ethd__red);
-  ethd__page_add(&page, ETHD_TEXT_SMALL, WORDS(READY), ethd__white);
+  ethd__page_add(&page, ETHD_TEXT_SMALL, s->checked, ethd__grey);
+  if (!over) ethd__page_add(&page, ETHD_TEXT_SMALL, WORDS(READY), ethd__white);
   ethd__page_draw(&s->window, &page);
   ethd__draw_room(s, finger, seconds);
 }
@@ -154,7 +158,14 @@ static ethd__wish pause_page(ethd__screen *s) {
   return s->stop ? ETHD_WISH_STOP : ETHD_WISH_PAUSE;
 }
 
-static ethd__wish wish(void *self, char words[ETHD_MESSAGE_MAX]) {
+/* What the experimenter's key does with the latest tap; GO: nothing. */
+static ethd__wish check(ethd__screen *s, int key, char words[ETHD_MESSAGE_MAX]) {
+  if (key == SDLK_u) return ETHD_WISH_UNDO;
+  if (!s->good || (key != SDLK_v && key != SDLK_r) || !write_words(s, WORDS(CHECK), words)) return ETHD_WISH_GO;
+  return key == SDLK_v ? ETHD_WISH_ACCEPT : ETHD_WISH_REJECT;
+}
+
+static ethd__wish wish(void *self, bool over, char words[ETHD_MESSAGE_MAX]) {
   ethd__screen *s = self;
   waiting wait = {.since = now(), .before = now()};
   double start = now();
@@ -162,12 +173,15 @@ static ethd__wish wish(void *self, char words[ETHD_MESSAGE_MAX]) {
     int key = s->window.key ? s->window.key : s->pending;
     s->pending = 0;
     if (key == SDLK_a && sure(s)) return ETHD_WISH_ABORT;
-    if (key == SDLK_n && write_note(s, words)) return ETHD_WISH_NOTE;
+    if (key == SDLK_n && write_words(s, WORDS(NOTE), words)) return ETHD_WISH_NOTE;
+    ethd__wish wanted = check(s, key, words);
+    if (wanted != ETHD_WISH_GO) return wanted;
     if (key == SDLK_p) return pause_page(s);
     if (s->stop) break;
-    ethd__screen_waiting(s, ethd__draw_finger(s), now() - start);
+    ethd__screen_waiting(s, over, ethd__draw_finger(s), over ? -1 : now() - start);
     ethd__window_end(&s->window);
-    if (s->device && key == SDLK_SPACE) return ETHD_WISH_GO;
+    if ((s->device && key == SDLK_SPACE) || (over && ethd__key_is_one_of(key, goes_on))) return ETHD_WISH_GO;
+    if (over) continue;
     bool stopped = s->device && s->device->stopped(s->device->self);
     if (stopped || at_start(s, &wait)) return ETHD_WISH_GO;
   }
@@ -177,7 +191,7 @@ static ethd__wish wish(void *self, char words[ETHD_MESSAGE_MAX]) {
 /* ---- after a tap ---- */
 
 /* The speed by which the tap is judged, and which speeds count. */
-static void verdict(void *self, const char *participant, const ethd__taken *taken, uint32_t valid, uint32_t wanted) {
+static void verdict(void *self, const char *participant, const ethd__taken *taken, const ethd__tally *tally) {
   ethd__screen *s = self;
   const ethd__metrics *m = &taken->result.metrics;
   const ethd__speed *speed = taken->speed;
@@ -185,10 +199,15 @@ static void verdict(void *self, const char *participant, const ethd__taken *take
   char count[96] = "";
   (void)participant;
   s->good = m->reason == ETHD_TAP_OK;
-  if (wanted) fill(s, ETHD_PHRASE_COUNT, "%.0f", (const double[]){valid, wanted}, 2, count, sizeof count);
-  snprintf(s->feedback, sizeof s->feedback, "%s%s%s", ethd__screen_words(s, ethd__advice(m->reason)),
-           *count ? "   " : "", count);
-  s->achieved[0] = 0;
+  const double done[] = {tally->wanted ? tally->valid : tally->taken,
+                         tally->wanted ? tally->wanted : s->protocol->training};
+  fill(s, ETHD_PHRASE_COUNT, "%.0f", done, 2, count, sizeof count);
+  snprintf(s->feedback, sizeof s->feedback, "%s   %s", ethd__screen_words(s, ethd__advised(m->reason, tally->checked)),
+           count);
+  s->achieved[0] = s->checked[0] = 0;
+  const double checked[] = {tally->accepted, tally->rejected};
+  if (tally->accepted + tally->rejected)
+    fill(s, ETHD_PHRASE_CHECKED, "%.0f", checked, 2, s->checked, sizeof s->checked);
   const double speeds[] = {v, speed->centre - speed->band, speed->centre + speed->band};
   if (isfinite(v)) fill(s, ETHD_PHRASE_ACHIEVED, "%.2f", speeds, 3, s->achieved, sizeof s->achieved);
 }

@@ -23,6 +23,7 @@ typedef struct ethd__screen {
   ethd__speed speed; /* of the present block */
   char title[200];
   char feedback[200], achieved[200]; /* of the last tap: how it was, how fast; "": none yet */
+  char checked[200];                 /* how many taps the experimenter accepted and rejected */
   ethd_vec from;                     /* where the finger was as the tap began */
   bool left;                         /* it has left the place since */
   int pending;                       /* a key that ended a tap, and is still to be heard */
@@ -74,8 +75,8 @@ bool ethd__screen_type(ethd__screen *screen, const ethd__page *page, char *line,
 ethd__wish ethd__screen_meet(void *screen, const ethd__meeting *meeting);
 int ethd__screen_ask(void *screen, const ethd__asked *asked);
 
-/* Shows the room between taps: how the last one was, and what comes next. */
-void ethd__screen_waiting(ethd__screen *screen, ethd_vec finger, double seconds);
+/* Shows the room between taps, or after a block's last one (`over`): how the last one was, and what comes next. */
+void ethd__screen_waiting(ethd__screen *screen, bool over, ethd_vec finger, double seconds);
 
 /* Their pages; `typed` is what stands on the line so far, `text` room for words. */
 void ethd__page_of_hand_over(const ethd__questionnaire *q, const ethd__meeting *meeting, const char *typed,

@@ -55,7 +55,6 @@ ethd__wish ethd__screen_meet(void *self, const ethd__meeting *meeting) {
   const ethd__questionnaire *q = &s->protocol->questionnaire;
   ethd__wish wish = meeting->handed_over ? hand_over(s, meeting) : ETHD_WISH_GO;
   ethd__page page;
-  s->feedback[0] = s->achieved[0] = 0;
   if (wish == ETHD_WISH_GO && q->consent[0] && !meeting->consented) wish = consent(s, meeting->participant);
   if ((wish != ETHD_WISH_GO && wish != ETHD_WISH_AGREE) || !q->instruction[0]) return wish;
   ethd__page_of_words(q->instruction, meeting->participant, ethd__screen_words(s, ETHD_PHRASE_KEYS_GO), &page);

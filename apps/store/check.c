@@ -115,8 +115,11 @@ static ethd_status check_schema(ethd__study_store *s, char *message) {
   if (status) return status;
   status = ethd__store_first(s, "PRAGMA user_version", &mark, message);
   if (!status && (!mark || atoi(mark) != ETHD_STORE_VERSION))
-    status = ethd__say(message, ETHD_E_SYNTAX, "%s: of version %.20s, this program reads %d", s->path,
-                       mark ? mark : "?", ETHD_STORE_VERSION);
+    status =
+        ethd__say(message, ETHD_E_SYNTAX,
+                  "%s: of version %.20s, this program reads %d: the tables (taps.csv and so on) can be read, and a new "
+                  "folder is needed to go on",
+                  s->path, mark ? mark : "?", ETHD_STORE_VERSION);
   free(mark);
   if (!status)
     status = ethd__store_first(

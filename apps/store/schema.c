@@ -15,5 +15,5 @@ const char ethd__schema[] =
     "CREATE TABLE survey (id INTEGER PRIMARY KEY, participant INTEGER NOT NULL, block INTEGER NOT NULL);\n"
     "CREATE UNIQUE INDEX survey_of ON survey (participant, block);\n"
     "CREATE TABLE event (id INTEGER PRIMARY KEY, utc TEXT NOT NULL, participant INTEGER, block INTEGER, "
-    "event TEXT NOT NULL, detail TEXT NOT NULL);\n"
+    "attempt INTEGER, event TEXT NOT NULL, detail TEXT NOT NULL);\n"
     "CREATE INDEX event_of ON event (participant);";

@@ -5,7 +5,7 @@
 #define ETHD__APPS_STORE_SCHEMA_H
 
 #define ETHD_STORE_APPLICATION 0x65746864 /* "ethd" */
-#define ETHD_STORE_VERSION 1              /* counts up with each change of the tables */
+#define ETHD_STORE_VERSION 2              /* counts up with each change of the tables */
 
 #define ETHD_STORE_FIGURES                                                                                        \
   "v_rvo, v_of, d_max, v_rmin, delta_s, eps, t_rvo, t_of, t_seen, peak_force, finger_radius, commanded, v_hand, " \

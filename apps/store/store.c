@@ -224,8 +224,9 @@ ethd_status ethd__store_add(ethd__study_store *s, const char *path, char message
       "INSERT INTO tap (" ETHD_STORE_TAP ") SELECT " ETHD_STORE_TAP " FROM part.tap ORDER BY id;"
       "INSERT INTO answer SELECT * FROM part.answer;"
       "INSERT INTO survey (participant, block) SELECT participant, block FROM part.survey ORDER BY id;"
-      "INSERT INTO event (utc, participant, block, event, detail) SELECT utc, participant, block, event, detail FROM "
-      "part.event ORDER BY id; COMMIT";
+      "INSERT INTO event (utc, participant, block, attempt, event, detail) SELECT utc, participant, block, attempt, "
+      "event, "
+      "detail FROM part.event ORDER BY id; COMMIT";
   char *uri = uri_of(path, READ_ONLY), unsaid[ETHD_MESSAGE_MAX];
   sqlite3_stmt *query = ethd__store_query(s, "ATTACH ? AS part");
   sqlite3_bind_text(query, 1, uri, -1, SQLITE_STATIC);

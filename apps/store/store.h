@@ -4,6 +4,8 @@
      hand     who leads the hand                   answer   to a question, as it stands now
      event    whatever isn't a tap                 survey   the answers of a block were confirmed
 
+   An event of an attempt says that the experimenter accepted or rejected that tap.
+
    Participants, blocks, attempts and questions count from 1, points of a grid from 0. What the inputs say (strategy,
    speed, gains) isn't stored again. SQLite's rollback journal makes each transaction whole and puts it on the disk before
    the next step: mode DELETE, synchronous FULL. One program writes at a time. The file must be on a local disk, because

@@ -67,6 +67,8 @@ static const study_column taps[] = {
     {"by_ring", "", "why the tap doesn't count by the paper's validity, which judges the ring; ok where it does",
      REASONS},
     {"by_finger", "", "the same by the finger's validity, which judges hand and finger whatever the strategy", REASONS},
+    {"checked", "", "what the experimenter, who looked at a valid tap, did with it; events.csv says why",
+     "accepted=the tap was looked at, and stays|rejected=the tap doesn't count"},
 };
 static const study_column survey[] = {
     PARTICIPANT, BLOCK, {"transition", "", "the strategy", NULL}, {"speed", "", "low, high, or m/s", NULL}};
@@ -74,12 +76,15 @@ static const study_column events[] = {
     {"utc", "", "when, UTC; simulated sessions have no clock", NULL},
     PARTICIPANT,
     BLOCK,
+    {"attempt", "", "of the tap that was accepted or rejected", NULL},
     {"event", "", "what happened",
      "open=the program began|screen=the window and its display|consent=the participant agreed|refuse=the participant "
      "didn't agree|pause=a pause began|note=somebody's words|abort=the participant wanted no more|undo=the abort was a "
      "mistake|withdraw=the participant withdrew|exclude=the experimenter took the participant out of the analysis|"
      "include=the experimenter put the participant back|fault=the device stopped itself|acknowledged=somebody has seen "
-     "to it|merged=from here on another station's|wish to stop=somebody "
+     "to it|accept=the experimenter accepted a valid tap|reject=the experimenter rejected it|uncheck=this was taken "
+     "back|"
+     "merged=from here on another station's|wish to stop=somebody "
      "ended the program|stop=the program ended|over=everything was done"},
     {"detail", "", "words for people, never read back but as a reason", NULL},
 };
@@ -92,7 +97,9 @@ static const study_column participants[] = {
     {"reason", "", "of whoever aborted, withdrew, excluded or included", NULL},
     {"hand", "", "who led the hand", HANDS},
     {"taps", "", "test taps", NULL},
-    {"valid", "", "of which valid", NULL},
+    {"valid", "", "of which valid, and not rejected", NULL},
+    {"accepted", "", "of which the experimenter accepted", NULL},
+    {"rejected", "", "valid ones that the experimenter rejected", NULL},
     {"first_utc", "", "the first tap's begin", NULL},
     {"last_utc", "", "the last tap's begin", NULL},
 };

@@ -6,13 +6,15 @@
 #include "study/source.h"
 
 typedef enum ethd__wish {
-  ETHD_WISH_GO,    /* go on with the next tap */
-  ETHD_WISH_AGREE, /* go on, with the participant's consent */
-  ETHD_WISH_NOTE,  /* write the words down, ask again */
-  ETHD_WISH_PAUSE, /* write down that a pause begins, ask again; GO ends it */
-  ETHD_WISH_ABORT, /* this participant wants no more, or doesn't agree to begin */
-  ETHD_WISH_UNDO,  /* the last abort was a mistake */
-  ETHD_WISH_STOP,  /* end the program; the session can be resumed */
+  ETHD_WISH_GO,     /* go on with the next tap */
+  ETHD_WISH_AGREE,  /* go on, with the participant's consent */
+  ETHD_WISH_NOTE,   /* write the words down, ask again */
+  ETHD_WISH_PAUSE,  /* write down that a pause begins, ask again; GO ends it */
+  ETHD_WISH_ABORT,  /* this participant wants no more, or doesn't agree to begin */
+  ETHD_WISH_UNDO,   /* the last abort, or the last accepting or rejecting, was a mistake */
+  ETHD_WISH_ACCEPT, /* the experimenter has looked at the latest tap: it stays, with the words */
+  ETHD_WISH_REJECT, /* it doesn't count, with the words */
+  ETHD_WISH_STOP,   /* end the program; the session can be resumed */
   ETHD_WISHES
 } ethd__wish;
 
@@ -23,6 +25,13 @@ typedef struct ethd__meeting {
   bool consented;   /* in an earlier sitting */
   bool can_undo;    /* somebody was ended in this sitting */
 } ethd__meeting;
+
+/* How far the block is, and what the experimenter did with the latest tap. */
+typedef struct ethd__tally {
+  uint32_t taken, valid, wanted; /* wanted: valid ones; 0: a training */
+  uint32_t accepted, rejected;
+  const char *checked; /* "accept", "reject"; NULL: nothing */
+} ethd__tally;
 
 /* A question that is due; number == the count of questions: the answers are to be confirmed. */
 typedef struct ethd__asked {
@@ -45,10 +54,11 @@ typedef struct ethd__front {
   ethd__wish (*meet)(void *self, const ethd__meeting *meeting);
   /* Announces a block; `rest` says that it is time for one. */
   void (*block)(void *self, const char *participant, const ethd__turn *turn, bool rest);
-  /* Tells how the tap was: `valid` of `wanted` taps are done so far; for training taps `wanted` is 0. */
-  void (*verdict)(void *self, const char *participant, const ethd__taken *taken, uint32_t valid, uint32_t wanted);
-  /* Called before each tap. `words` gets the words of a note. */
-  ethd__wish (*wish)(void *self, char words[ETHD_MESSAGE_MAX]);
+  /* Tells how the latest tap was, and again once the experimenter has accepted or rejected it. */
+  void (*verdict)(void *self, const char *participant, const ethd__taken *taken, const ethd__tally *tally);
+  /* Called before each tap, and after the block's last one (`over`), when GO goes on. `words` gets those of a note, or
+     why a tap is accepted or rejected. */
+  ethd__wish (*wish)(void *self, bool over, char words[ETHD_MESSAGE_MAX]);
   /* Says that the device has stopped itself. True: somebody has seen to it, and it may go on. */
   bool (*stopped)(void *self, const char *why);
   /* Asks a question. Returns an answer, ETHD_ANSWER_BACK to the question before, ETHD_ANSWER_STOP, or

@@ -33,6 +33,10 @@
   X(THANKS, "thanks", "That was all. Thank you!")                                                                \
   X(COUNT, "count", "({1} of {2})")                                                                              \
   X(ACHIEVED, "achieved", "{1} m/s; from {2} to {3} m/s count")                                                  \
+  X(CHECK, "check", "Experimenter: why?")                                                                        \
+  X(ACCEPTED, "accepted", "accepted")                                                                            \
+  X(REJECTED, "rejected", "rejected")                                                                            \
+  X(CHECKED, "checked", "accepted: {1}, rejected: {2}")                                                          \
   X(VALID, "valid", "valid")                                                                                     \
   X(FAULT, "fault", "the device stopped itself")                                                                 \
   X(EARLY_CONTACT, "early_contact", "touched the ring before the wall: keep the finger in the middle")           \
@@ -43,6 +47,7 @@
   X(DOUBLE, "double", "tapped twice: once is enough")                                                            \
   X(KEYS_GO, "keys_go", "Space goes on   Esc stops")                                                             \
   X(KEYS_WAIT, "keys_wait", "P pause   N note   A end this participant   Esc stop")                              \
+  X(KEYS_CHECK, "keys_check", "V accept this tap   R reject it   U undo")                                        \
   X(KEYS_NOW, "keys_now", "Space now")                                                                           \
   X(KEYS_NOTE, "keys_note", "Enter keeps it   Esc forgets it")                                                   \
   X(KEYS_SURE, "keys_sure", "Y yes   N goes back")                                                               \

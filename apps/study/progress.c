@@ -15,9 +15,11 @@ bool ethd__block_over(const ethd__protocol *protocol, const ethd__study_block *b
 /* ---- a participant ---- */
 
 static ethd_status read_blocks(ethd__study_store *store, ethd__participant *who, char *message) {
-  sqlite3_stmt *row = ethd__store_query(store, "SELECT block, count(*), sum(valid), 0 FROM tap WHERE point = 0 AND "
-                                               "participant = ?1 GROUP BY block UNION ALL "
-                                               "SELECT block, 0, 0, 1 FROM survey WHERE participant = ?1");
+  sqlite3_stmt *row = ethd__store_query(
+      store, "SELECT block, count(*), sum(valid AND checked IS NOT 'rejected'), 0, "
+             "sum(checked IS 'accepted'), sum(checked IS 'rejected') FROM (SELECT block, valid, " ETHD_STUDY_CHECKED
+             " AS checked FROM tap WHERE point = 0 AND participant = ?1) GROUP BY block "
+             "UNION ALL SELECT block, 0, 0, 1, 0, 0 FROM survey WHERE participant = ?1");
   sqlite3_bind_int64(row, 1, who->person + 1);
   while (ethd__store_next(row)) {
     int number = sqlite3_column_int(row, 0);
@@ -26,6 +28,8 @@ static ethd_status read_blocks(ethd__study_store *store, ethd__participant *who,
     at->taken += (uint32_t)sqlite3_column_int64(row, 1);
     at->valid += (uint32_t)sqlite3_column_int64(row, 2);
     at->surveyed |= sqlite3_column_int(row, 3);
+    at->accepted += (uint32_t)sqlite3_column_int64(row, 4);
+    at->rejected += (uint32_t)sqlite3_column_int64(row, 5);
   }
   return ethd__store_end(store, row, message);
 }
@@ -85,6 +89,9 @@ static const char odd_rows[] = "SELECT " BEYOND("tap") " OR " BEYOND("answer") "
     "event") " OR EXISTS (SELECT 1 FROM tap WHERE point NOT BETWEEN 0 AND ?3)"
              " OR EXISTS (SELECT 1 FROM tap GROUP BY point, participant, block HAVING max(attempt) <> count(*) OR "
              "min(attempt) <> 1)"
+             " OR EXISTS (SELECT 1 FROM event WHERE attempt NOTNULL AND NOT EXISTS (SELECT 1 FROM tap WHERE point = 0 "
+             "AND valid AND tap.participant = event.participant AND tap.block = event.block AND tap.attempt = "
+             "event.attempt))"
              " OR EXISTS (SELECT 1 FROM tap GROUP BY participant HAVING min(hand) <> max(hand))"
              " OR EXISTS (SELECT 1 FROM answer WHERE question NOT BETWEEN 1 AND ?4 OR number NOT BETWEEN 0 AND 9)";
 

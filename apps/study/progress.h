@@ -9,7 +9,8 @@
 
 /* How far a block has come. */
 typedef struct ethd__progress_of {
-  uint32_t taken, valid;
+  uint32_t taken, valid; /* valid: those that were rejected don't count */
+  uint32_t accepted, rejected;
   bool surveyed; /* asked and confirmed */
 } ethd__progress_of;
 
@@ -22,6 +23,12 @@ typedef struct ethd__participant {
 
 /* SQL: the events that say whether a participant is in; the last one counts. */
 #define ETHD_STUDY_DECISIONS "('abort', 'undo', 'refuse', 'withdraw', 'exclude', 'include')"
+
+/* SQL: "accepted" or "rejected" by the experimenter, of a row of tap; NULL: neither, or it was taken back. */
+#define ETHD_STUDY_CHECKED                                                                                             \
+  "(SELECT CASE event WHEN 'accept' THEN 'accepted' WHEN 'reject' THEN 'rejected' END FROM event WHERE "               \
+  "event.participant = tap.participant AND event.block = tap.block AND event.attempt = tap.attempt ORDER BY event.id " \
+  "DESC LIMIT 1)"
 
 /* Gives what is known of a participant. */
 ETHD_MUST_CHECK ethd_status ethd__participant_of(ethd__study_store *store, uint32_t person, ethd__participant *out,

@@ -15,7 +15,7 @@
 
 /* ---- a tap ---- */
 
-static ethd__about about(const ethd__turn *turn) { return (ethd__about){turn->person + 1, turn->number}; }
+static ethd__about about(const ethd__turn *turn) { return (ethd__about){turn->person + 1, turn->number, 0}; }
 
 static const ethd__about nothing;
 
@@ -37,15 +37,30 @@ static ethd_status have_tap(ethd__sitting *s, const char *id, const ethd__turn *
   return status ? status : ethd__tap_put(&s->store, 0, taken, message);
 }
 
+/* Tells how the latest tap was. */
+static void tell(ethd__sitting *s) {
+  const ethd__turn *turn = &s->latest.turn;
+  const ethd__progress_of *at = &s->who.at[turn->number - 1];
+  char id[ETHD_STUDY_ID_MAX];
+  ethd__participant_id(&s->folder->protocol, turn->person, id);
+  s->front.verdict(s->front.self, id, &s->latest,
+                   &(ethd__tally){.taken = at->taken,
+                                  .valid = at->valid,
+                                  .wanted = turn->block.training ? 0 : s->folder->protocol.taps,
+                                  .accepted = at->accepted,
+                                  .rejected = at->rejected,
+                                  .checked = s->checked});
+}
+
 static ethd_status run_tap(ethd__sitting *s, const char *id, const ethd__turn *turn, char *message) {
   ethd__taken taken;
   ethd_status status = have_tap(s, id, turn, &taken, message);
   if (status) return status == ETHD_STATUS_EMPTY ? ETHD_OK : status;
   s->taps++;
+  s->latest = taken;
+  s->checked = NULL;
   status = ethd__sitting_turn(s, turn->person, message);
-  if (!status)
-    s->front.verdict(s->front.self, id, &taken, s->who.at[turn->number - 1].valid,
-                     turn->block.training ? 0 : s->folder->protocol.taps);
+  if (!status) tell(s);
   return status;
 }
 
@@ -67,6 +82,18 @@ static ethd_status see_to_device(ethd__sitting *s, const ethd__turn *turn, char 
 
 /* ---- what people say ---- */
 
+/* Accepts or rejects the latest tap, or takes this back. A block that was over may then be due again. */
+static ethd_status check(ethd__sitting *s, const ethd__turn *turn, const char *event, const char *why, char *message) {
+  const ethd__turn *tap = &s->latest.turn;
+  if (!tap->attempt || s->latest.result.metrics.reason != ETHD_TAP_OK) return ETHD_OK;
+  const ethd__about of = {tap->person + 1, tap->number, tap->attempt};
+  s->checked = strcmp(event, "uncheck") ? event : NULL;
+  s->again |= tap->number != turn->number;
+  ethd_status status = ethd__sitting_event(s, of, event, why, message);
+  if (!status) tell(s);
+  return status;
+}
+
 /* The participant who was ended last will tap again after the others. */
 static ethd_status undo(ethd__sitting *s, char *message) {
   const ethd__about who = {.participant = s->left};
@@ -76,17 +103,19 @@ static ethd_status undo(ethd__sitting *s, char *message) {
   return ethd__sitting_event(s, who, "undo", "", message);
 }
 
-/* *go: the next tap may come. */
-static ethd_status hear(ethd__sitting *s, const ethd__turn *turn, bool *go, bool *stop, char *message) {
+/* *go: the next tap may come, or the next block where this one is `over`. */
+static ethd_status hear(ethd__sitting *s, const ethd__turn *turn, bool over, bool *go, bool *stop, char *message) {
   static const char *const kinds[ETHD_WISHES] = {[ETHD_WISH_NOTE] = "note",
                                                  [ETHD_WISH_PAUSE] = "pause",
                                                  [ETHD_WISH_ABORT] = "abort",
                                                  [ETHD_WISH_STOP] = "wish to stop"};
   char words[ETHD_MESSAGE_MAX] = "";
-  ethd__wish wish = s->front.wish(s->front.self, words);
+  ethd__wish wish = s->front.wish(s->front.self, over, words);
   *go = wish == ETHD_WISH_GO && !ethd__stop;
   *stop = wish == ETHD_WISH_STOP || ethd__stop;
-  if (wish == ETHD_WISH_UNDO) return undo(s, message);
+  if (wish == ETHD_WISH_UNDO) return s->checked ? check(s, turn, "uncheck", "", message) : undo(s, message);
+  if (wish == ETHD_WISH_ACCEPT) return check(s, turn, "accept", words, message);
+  if (wish == ETHD_WISH_REJECT) return check(s, turn, "reject", words, message);
   if (!kinds[wish]) return ETHD_OK;
   if (wish == ETHD_WISH_ABORT) s->left = turn->person + 1;
   return ethd__sitting_event(s, about(turn), kinds[wish], words, message);
@@ -116,17 +145,19 @@ static bool block_due(const ethd__sitting *s, const ethd__turn *turn) {
   return s->who.in && !ethd__block_over(&s->folder->protocol, &turn->block, at->taken, at->valid);
 }
 
+/* After the last tap people see how it was, and the experimenter may reject it: then one more is due. */
 static ethd_status run_block(ethd__sitting *s, const char *id, ethd__turn *turn, bool *stop, char *message) {
   const ethd__protocol *p = &s->folder->protocol;
   ethd_status status = ETHD_OK;
-  bool go, rest = p->rest && turn->number > 1 && (turn->number - 1) % p->rest == 0;
-  if (block_due(s, turn)) s->front.block(s->front.self, id, turn, rest);
-  while (!status && !*stop && block_due(s, turn)) {
+  bool rest = p->rest && turn->number > 1 && (turn->number - 1) % p->rest == 0, left = !block_due(s, turn);
+  if (!left) s->front.block(s->front.self, id, turn, rest);
+  while (!status && !*stop && !left && s->who.in) {
+    bool over = !block_due(s, turn), go = false;
     turn->attempt = s->who.at[turn->number - 1].taken + 1;
-    go = false;
-    status = see_to_device(s, turn, message);
-    if (!status) status = hear(s, turn, &go, stop, message);
-    if (!status && go) status = run_tap(s, id, turn, message);
+    if (!over) status = see_to_device(s, turn, message);
+    if (!status) status = hear(s, turn, over, &go, stop, message);
+    if (!status && go && !over) status = run_tap(s, id, turn, message);
+    left = over && go;
   }
   return !status && !*stop && ethd__survey_due(s, turn) ? ethd__survey_run(s, id, turn, stop, message) : status;
 }
@@ -138,13 +169,18 @@ static ethd_status run_person(ethd__sitting *s, uint32_t person, bool *stop, cha
   bool met = !ethd__hand_is_persons(s->source.hand);
   ethd_status status = ethd__sitting_turn(s, person, message);
   ethd__participant_id(&s->folder->protocol, person, id);
-  for (size_t i = 0; !status && !*stop && i < count; i++) {
-    ethd__turn turn = {.person = person, .number = i + 1, .of = count, .block = blocks[i]};
-    if (!block_due(s, &turn) && !ethd__survey_due(s, &turn)) continue;
-    if (!met) status = meet(s, id, stop, message);
-    met = true;
-    if (!status && !*stop && s->who.in) status = run_block(s, id, &turn, stop, message);
-  }
+  s->latest = (ethd__taken){.turn = {.attempt = 0}};
+  s->checked = NULL;
+  do {
+    s->again = false;
+    for (size_t i = 0; !status && !*stop && i < count; i++) {
+      ethd__turn turn = {.person = person, .number = i + 1, .of = count, .block = blocks[i]};
+      if (!block_due(s, &turn) && !ethd__survey_due(s, &turn)) continue;
+      if (!met) status = meet(s, id, stop, message);
+      met = true;
+      if (!status && !*stop && s->who.in) status = run_block(s, id, &turn, stop, message);
+    }
+  } while (!status && !*stop && s->again);
   return status;
 }
 
@@ -173,17 +209,33 @@ ethd_status ethd__sitting_run(ethd__sitting *s, bool *over, char message[ETHD_ME
 /* ---- decisions ---- */
 
 /* The event gets a clock if one of the hands is a person's. */
-static ethd_status decide(ethd__sitting *s, uint32_t person, const char *event, const char *reason, char *message) {
+static ethd_status decide(ethd__sitting *s, ethd__about about, const char *event, const char *reason, char *message) {
   bool is[ETHD_HAND_SOURCES];
   ethd_status status = ethd__hands_of(&s->store, is, message);
   int hand = 0;
   while (hand < ETHD_HAND_SIMULATED && !is[hand]) hand++;
   s->source.hand = (ethd__hand_source)hand;
-  if (!status) status = ethd__sitting_event(s, (ethd__about){.participant = person + 1}, event, reason, message);
+  if (!status) status = ethd__sitting_event(s, about, event, reason, message);
   return status ? status : export(s, message);
 }
 
-ethd_status ethd__session_decide(const char *path, uint32_t person, const char *event, const char *reason,
+/* Only a tap that counts otherwise can be accepted or rejected. */
+static ethd_status find_tap(ethd__study_store *store, ethd__about about, char *message) {
+  sqlite3_stmt *row =
+      ethd__store_query(store, "SELECT valid, reason FROM tap WHERE participant = ? AND block = ? AND attempt = ?");
+  sqlite3_bind_int64(row, 1, about.participant);
+  sqlite3_bind_int64(row, 2, (int64_t)about.block);
+  sqlite3_bind_int64(row, 3, about.attempt);
+  bool there = ethd__store_next(row), valid = there && sqlite3_column_int(row, 0);
+  char what[64] = "isn't in this session";
+  if (there) snprintf(what, sizeof what, "isn't valid (%.20s)", ethd__store_text(row, 1));
+  ethd_status status = ethd__store_end(store, row, message);
+  if (status || valid) return status;
+  return ethd__say(message, ETHD_E_RANGE, "participant %u, block %zu, attempt %u: the tap %s; a valid one is allowed",
+                   about.participant, about.block, about.attempt, what);
+}
+
+ethd_status ethd__session_decide(const char *path, ethd__about about, const char *event, const char *reason,
                                  char message[ETHD_MESSAGE_MAX]) {
   ethd__folder folder;
   ethd_status status = ethd__folder_read(path, &folder, message);
@@ -191,11 +243,12 @@ ethd_status ethd__session_decide(const char *path, uint32_t person, const char *
   ethd__sitting s = {.folder = &folder};
   if (folder.simulated)
     status = ethd__say(message, ETHD_E_ARGUMENT, "%s: holds a simulation, whose participants all stay", path);
-  else if (person >= folder.protocol.participants)
-    status = ethd__say(message, ETHD_E_RANGE, "participant %u: 1 to %u are allowed", person + 1,
+  else if (about.participant > folder.protocol.participants)
+    status = ethd__say(message, ETHD_E_RANGE, "participant %u: 1 to %u are allowed", about.participant,
                        folder.protocol.participants);
   if (!status) status = ethd__progress_open(&folder, ETHD_STUDY_STORE, true, &s.store, message);
-  if (!status) status = decide(&s, person, event, reason, message);
+  if (!status && about.attempt) status = find_tap(&s.store, about, message);
+  if (!status) status = decide(&s, about, event, reason, message);
   ethd__sitting_close(&s);
   ethd__folder_close(&folder);
   return status;

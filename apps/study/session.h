@@ -10,8 +10,9 @@
 /* Runs until all is done, somebody stops it or ethd__stop is set. *over: all is done. */
 ETHD_MUST_CHECK ethd_status ethd__sitting_run(ethd__sitting *s, bool *over, char message[ETHD_MESSAGE_MAX]);
 
-/* Takes a participant out of the analysis or back: event is withdraw, exclude or include. Nobody taps. */
-ETHD_MUST_CHECK ethd_status ethd__session_decide(const char *folder, uint32_t person, const char *event,
+/* Writes down a decision; nobody taps. About a participant: withdraw, exclude or include; about a valid tap: accept or
+   reject. */
+ETHD_MUST_CHECK ethd_status ethd__session_decide(const char *folder, ethd__about about, const char *event,
                                                  const char *reason, char message[ETHD_MESSAGE_MAX]);
 
 #endif

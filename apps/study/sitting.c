@@ -31,13 +31,15 @@ ethd_status ethd__sitting_event(ethd__sitting *s, ethd__about about, const char 
   char utc[ETHD_UTC_MAX];
   sqlite3_stmt *insert = ethd__store_query(
       &s->store,
-      "INSERT INTO event (utc, participant, block, event, detail) VALUES (?, nullif(?, 0), nullif(?, 0), ?, ?)");
+      "INSERT INTO event (utc, participant, block, attempt, event, detail) VALUES (?, nullif(?, 0), nullif(?, 0), "
+      "nullif(?, 0), ?, ?)");
   ethd__sitting_now(s, utc);
   sqlite3_bind_text(insert, 1, utc, -1, SQLITE_STATIC);
   sqlite3_bind_int64(insert, 2, about.participant);
   sqlite3_bind_int64(insert, 3, (int64_t)about.block);
-  sqlite3_bind_text(insert, 4, event, -1, SQLITE_STATIC);
-  sqlite3_bind_text(insert, 5, detail, -1, SQLITE_STATIC);
+  sqlite3_bind_int64(insert, 4, about.attempt);
+  sqlite3_bind_text(insert, 5, event, -1, SQLITE_STATIC);
+  sqlite3_bind_text(insert, 6, detail, -1, SQLITE_STATIC);
   return ethd__sitting_put(s, insert, message);
 }
 

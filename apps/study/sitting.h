@@ -15,7 +15,9 @@ typedef struct ethd__sitting {
   uint64_t taps;        /* done in this sitting */
   uint32_t unasked;     /* blocks after which nobody could be asked */
   uint32_t left;        /* who was ended last in this sitting, from 1; 0: nobody */
-  bool handed_over, undone;
+  ethd__taken latest;   /* this participant's latest tap in this sitting, without its ticks; attempt 0: none */
+  const char *checked;  /* "accept" or "reject": what the experimenter did with it; NULL: nothing */
+  bool handed_over, undone, again; /* again: a block that was over has a tap to come */
 } ethd__sitting;
 
 /* Opens a folder. Where nothing has happened yet a new session begins; else it goes on, if its taps are this hand's. A
@@ -33,6 +35,7 @@ ETHD_MUST_CHECK ethd_status ethd__sitting_put(ethd__sitting *s, sqlite3_stmt *in
 typedef struct ethd__about {
   uint32_t participant; /* from 1, 0: nobody */
   size_t block;         /* from 1, 0: none */
+  uint32_t attempt;     /* from 1, 0: none */
 } ethd__about;
 
 /* Writes down something that isn't a tap. */

@@ -77,7 +77,8 @@ static void select_taps(FILE *sql, const ethd__folder *folder) {
   if (folder->simulated) fprintf(sql, "'%.12s', point, ", folder->hash);
   fputs("id(participant), block, part(participant, block), attempt, transition(participant, block), speed(participant, "
         "block), "
-        "seed, tap, valid, reason, " ETHD_STORE_FIGURES ", hand, movement, utc, by_ring, by_finger",
+        "seed, tap, valid, reason, " ETHD_STORE_FIGURES
+        ", hand, movement, utc, by_ring, by_finger, " ETHD_STUDY_CHECKED,
         sql);
   for (size_t i = 0; folder->simulated && i < folder->protocol.axis_count; i++) fprintf(sql, ", gain(point, %zu)", i);
   fputs(folder->simulated ? " FROM tap ORDER BY point, participant, block, attempt" : " FROM tap ORDER BY id", sql);
@@ -97,7 +98,7 @@ static void select_survey(FILE *sql, const ethd__folder *folder) {
 
 static void select_events(FILE *sql, const ethd__folder *folder) {
   (void)folder;
-  fputs("SELECT utc, id(participant), block, event, detail FROM event ORDER BY id", sql);
+  fputs("SELECT utc, id(participant), block, attempt, event, detail FROM event ORDER BY id", sql);
 }
 
 /* Everybody has a row who has tapped or about whom something was decided, then with its reason. */
@@ -108,15 +109,18 @@ static void select_participants(FILE *sql, const ethd__folder *folder) {
       sql,
       "WITH decided AS (SELECT participant, event, detail FROM event WHERE id IN (SELECT max(id) FROM event WHERE "
       "participant NOTNULL AND event IN " ETHD_STUDY_DECISIONS " GROUP BY participant)),"
-      " done AS (SELECT participant, part(participant, block) = 'test' AS test, count(*) AS taken, sum(valid) AS "
-      "valid FROM tap GROUP BY participant, block),"
+      " done AS (SELECT participant, part(participant, block) = 'test' AS test, count(*) AS taken, "
+      "sum(valid AND checked IS NOT 'rejected') AS valid, sum(checked IS 'accepted') AS accepted, "
+      "sum(checked IS 'rejected') AS rejected FROM (SELECT participant, block, valid, " ETHD_STUDY_CHECKED
+      " AS checked FROM tap) GROUP BY participant, block),"
       " tapped AS (SELECT participant, sum(taken * test) AS taps, sum(valid * test) AS valid, "
+      "sum(accepted * test) AS accepted, sum(rejected * test) AS rejected, "
       "sum(iif(test, valid >= %u OR taken >= %u, taken >= %u)) AS over FROM done GROUP BY participant)"
       " SELECT id(participant), CASE event WHEN 'abort' THEN 'aborted' WHEN 'refuse' THEN 'refused' WHEN 'withdraw' "
       "THEN 'withdrawn' WHEN 'exclude' THEN 'excluded' ELSE iif(over = %zu, 'complete', 'incomplete') END,"
       " coalesce(event IN ('undo', 'include'), 1), detail,"
       " (SELECT hand FROM tap WHERE point = 0 AND tap.participant = people.participant LIMIT 1),"
-      " coalesce(taps, 0), coalesce(valid, 0),"
+      " coalesce(taps, 0), coalesce(valid, 0), coalesce(accepted, 0), coalesce(rejected, 0),"
       " (SELECT utc FROM tap WHERE point = 0 AND tap.participant = people.participant ORDER BY id LIMIT 1),"
       " (SELECT utc FROM tap WHERE point = 0 AND tap.participant = people.participant ORDER BY id DESC LIMIT 1)"
       " FROM (SELECT participant FROM tapped UNION SELECT participant FROM decided) AS people"

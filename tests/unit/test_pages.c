@@ -91,7 +91,7 @@ static void check_room(void) {
     snprintf(screen.feedback, sizeof screen.feedback, "%s", cases[i].feedback);
     snprintf(screen.achieved, sizeof screen.achieved, "%s", cases[i].achieved);
     screen.device = cases[i].device ? &source : NULL;
-    ethd__screen_waiting(&screen, (ethd_vec){0.27, 0.25}, 0.05);
+    ethd__screen_waiting(&screen, false, (ethd_vec){0.27, 0.25}, 0.05);
     check_frame(cases[i].name, 3 + 2 * (*cases[i].feedback != 0));
   }
 }
@@ -171,8 +171,9 @@ static void judge_taps(void) {
   ethd__taken taken = {.speed = &speed, .result = {.metrics = {.v_rvo = 0.43}}};
   for (int reason = 0; reason < ETHD_TAP_REASON_COUNT; reason++) {
     taken.result.metrics.reason = (ethd__reason)reason;
-    front.verdict(front.self, "P12", &taken, 2, 3);
-    ethd__screen_waiting(&screen, (ethd_vec){0.27, 0.25}, 0.05);
+    const ethd__tally tally = {.taken = 4, .valid = 2, .wanted = 3, .accepted = 1, .rejected = 1};
+    front.verdict(front.self, "P12", &taken, &tally);
+    ethd__screen_waiting(&screen, false, (ethd_vec){0.27, 0.25}, 0.05);
     check_frame(reason ? "german-early" : "german-valid", 5);
     keep_texts();
   }

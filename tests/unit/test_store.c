@@ -98,7 +98,7 @@ START_TEST(test_a_tap_comes_back) {
   done(ethd__tables_of(&study, &store, text, message));
   ck_assert_str_eq(strchr(text[ETHD_TABLE_TAPS], '\n') + 1,
                    "P01,2,test,1,offset,low,18446744073709551615,7,1,ok,0.10000000000000001,,0,0,0,-0,0,0,0,0,0,0,"
-                   "0,0,0,mouse,\"a, \"\"b\"\".csv\",2026-01-02T03:04:05Z,ok,double\n");
+                   "0,0,0,mouse,\"a, \"\"b\"\".csv\",2026-01-02T03:04:05Z,ok,double,\n");
   for (int i = 0; i < ETHD_TABLES; i++) free(text[i]);
   ethd__store_close(&store);
 }
@@ -231,7 +231,7 @@ START_TEST(test_anothers_tables) {
       {"PRAGMA writable_schema = 1; UPDATE sqlite_schema SET sql = 'CREATE TABLE ' || char(10, 27) WHERE name = 'tap'",
        ""},
       {"PRAGMA application_id = 1", "isn't a study's file"},
-      {"PRAGMA user_version = 2", "of version 2, this program reads 1"},
+      {"PRAGMA user_version = 1", "of version 1, this program reads 2: the tables"},
       {"PRAGMA journal_mode = WAL", "isn't a study's file"},
       {"UPDATE study SET hash = 'x'", "begun with other files"},
       {"INSERT INTO study VALUES ('12ab')", "begun with other files"},

@@ -114,6 +114,8 @@ class Taps:
     people: List[str] = field(default_factory=list)
     training: int = 0
     left_out: int = 0
+    accepted: int = 0  #: by the experimenter, who looked at it
+    rejected: int = 0  #: likewise; it is in no cell
 
     @property
     def count(self) -> int:
@@ -214,6 +216,10 @@ class _Reader:
         if cells["participant"] in self.absent:
             taps.left_out += 1
             return
+        taps.accepted += cells["checked"] == "accepted"
+        if cells["checked"] == "rejected":
+            taps.rejected += 1
+            return
         key = (cells["transition"], cells["speed"])
         if key not in lists:
             if len(lists) == _CELLS:
@@ -265,7 +271,7 @@ def of_folder(folder: Folder, point: int) -> Tuple[Dict[int, Taps], Set[str]]:
     if missing:
         raise Refusal(f"{table.path}:1: no column {missing[-1]}; a taps.csv of ethd-study has it")
     absent = {p for p, analysed in participants.cells("participant", "analysed") if analysed == "0"}
-    columns: Sequence[str] = (*_WORDS, "point", "part", "block", "attempt", "reason", "by_ring", "by_finger", "hand", *_NEEDED, *_LATER)
+    columns: Sequence[str] = (*_WORDS, "point", "part", "block", "attempt", "reason", "by_ring", "by_finger", "checked", "hand", *_NEEDED, *_LATER)
     reader = _Reader(table, folder.facts["speeds"], absent)
     for row, cells in enumerate(table.cells(*columns)):
         reader.take(row, dict(zip(columns, cells)))

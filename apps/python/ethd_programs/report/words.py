@@ -23,12 +23,13 @@ _LINKS = (("table1", "Table 1"), ("claims", "The paper's sentences"), ("figures"
 
 def _numbers(r: Report) -> None:
     t = r.taps
+    checked = f", {t.accepted} accepted by the experimenter, {t.rejected} rejected and left out" if t.accepted + t.rejected else ""
     r.page.put("<li><b>What was measured:</b> taps of a finger on a virtual wall, which a ring around the finger renders. %d test tap%s, %d of "
-               "them valid, in %d cell%s, each a strategy at a speed (%s); %d training tap%s %s left out. Of each tap: the ring's speed as it "
+               "them valid%s, in %d cell%s, each a strategy at a speed (%s); %d training tap%s %s left out. Of each tap: the ring's speed as it "
                "meets the wall (v_rvo) and as the finger touches it (v_of), how far it rebounds first (d_max), its smallest speed after the touch "
                "(v_rmin); of strategies that brake how long (Delta_s) and how far (eps) they do. &quot;The paper&quot; is <em>A New Control "
                "Strategy for the Improvement of Contact Rendering with Encounter-type Haptic Displays</em>.</li>\n",
-               t.count, plural(t.count), t.valid, len(t.cells), plural(len(t.cells)), "; ".join(c.label for c in t.cells),
+               t.count, plural(t.count), t.valid, checked, len(t.cells), plural(len(t.cells)), "; ".join(c.label for c in t.cells),
                t.training, plural(t.training), "is" if t.training == 1 else "are")
 
 
