@@ -38,7 +38,7 @@ one() {
 one words 3 drivers/servo/words.c 's/raw = raw == raw ? fmin(fmax(raw, min), max) : 0;/;/' $memory
 one npy_count 34 drivers/runtime/record/npy.c 's/if (!digits || end - p < 6 || /if (!digits || /' $memory
 one decoder 48 drivers/proximity_ring/decoder.c 's/while (at < CODED)/while (at <= CODED)/' $memory
-one param 40 lib/param.c 's/bool inside = v >= row->min \&\& v <= row->max;/bool inside = !(v < row->min) \&\& v <= row->max;/' $memory
+one param 40 lib/param.c 's/inside = isgreaterequal(v, row->min)/inside = !(v < row->min)/' $memory
 # minutes
 [ "${ETHD_PROOFS:-}" != all ] || one guard 34 lib/guard/guard.c '/bits |= ETHD_GUARD_RATE;/{n;d}' \
   --no-standard-checks --sat-solver cadical

@@ -1,14 +1,15 @@
 /* Of a parameter's row and value, whatever they are: what ethd_params_check takes is a number within the row's
    range, and whole where the row has words; what it refuses isn't. Of a name of any bytes: is_name reads none
    behind its end. */
-#define __builtin_isfinite(v) __CPROVER_isfinited(v)
-#include "../../lib/param.c"
+#include <math.h>
 /* CBMC doesn't know the quiet comparisons; it knows no traps either. */
 #undef isgreaterequal
 #undef islessequal
 #define isgreaterequal(x, y) ((x) >= (y))
 #define islessequal(x, y) ((x) <= (y))
+#define __builtin_isfinite(v) __CPROVER_isfinited(v)
 #include "../../lib/error.c"
+#include "../../lib/param.c"
 
 double nondet_double(void);
 _Bool nondet_bool(void);
