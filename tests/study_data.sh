@@ -70,7 +70,7 @@ stays() { # PATTERN: whatever is done with the folder
 # rows of nobody, of nothing, out of order, in tables that are ours
 for rows in "UPDATE tap SET participant = 9 WHERE id = 1" "UPDATE tap SET attempt = 5 WHERE id = 1" "UPDATE tap SET block = 99 WHERE id = 2" \
   "UPDATE tap SET block = 'x' WHERE id = 2" "UPDATE tap SET point = 1 WHERE id = 1" "INSERT INTO answer VALUES (1, 2, 9, 1, NULL)" \
-  "INSERT INTO answer VALUES (1, 2, 1, 6, NULL)" "INSERT INTO answer VALUES (9, 2, 1, 1, NULL)" "INSERT INTO survey (participant, block) VALUES (1, 99)" \
+  "INSERT INTO answer VALUES (1, 2, 1, 6, NULL)" "INSERT INTO answer VALUES (9, 2, 1, 1, NULL)" "INSERT INTO answer VALUES (1, 0, 1, 1, NULL)" "INSERT INTO survey (participant, block) VALUES (1, 99)" \
   "INSERT INTO event (utc, participant, event, detail) VALUES ('', 77, 'abort', '')" \
   "INSERT INTO event (utc, participant, block, attempt, event, detail) VALUES ('', 1, 2, 99, 'reject', '')" \
   "INSERT INTO hand VALUES ('mouse'); UPDATE tap SET hand = 'mouse' WHERE id = 1"; do
@@ -295,6 +295,8 @@ bad 'bad.study:4: survey.q2: stands there without the questions before it' '[stu
 bad 'bad.study:5: survey.q1: one answer' '[study]\nsurvey = on\n[survey]\nq1 = Why?\nq1_answers = so\n'
 bad 'bad.study:5: survey.q1: over nine answers' '[study]\nsurvey = on\n[survey]\nq1 = Why?\nq1_answers = a|b|c|d|e|f|g|h|i|j\n'
 bad 'bad.study:4: survey.q10: no key of this section; q1 to q9' '[study]\nsurvey = on\n[survey]\nq10 = Why?\n'
+bad 'bad.study:4: after.q2: stands there without the questions before it' '[before]\nq1 = Why?\n[after]\nq2 = Why?\n'
+bad 'bad.study:2: before.age: no key of this section; q1 to q9' '[before]\nage = Why?\n'
 bad 'bad.study:2: pages.welcome: no key of this section; consent1 to' '[pages]\nwelcome = hello\n'
 bad 'bad.study:2: study.rest: found "-1"' '[study]\nrest = -1\n'
 bad 'bad.study:2: hand.source: found "paw", simulated|recorded|people|mouse' '[hand]\nsource = paw\n'

@@ -120,6 +120,27 @@ if command -v gnuplot >/dev/null; then
   "$BUILD/bin/ethd-report" "$folder/words" >"$folder/out" 2>&1 && grep -q '=1+1, &quot;soft&quot;; ,abort,' "$folder/words/report/report.html" || fail "words in the report: $(cat "$folder/out")"
 fi
 
+# ---- what is asked once: before the first tap, after the last; who comes back isn't asked again ----
+printf '[study]\nparticipants = 1\nstrategies = smooth\nspeeds = 0.2\ntraining = 0\ntaps = 1\nattempts = 1\n[device]\nconfig = device.ini\n[hand]\nsource = people\n[before]\nq1 = How old are you?\nq1_answers = text\nq2 = Which hand?\nq2_answers = left | right\n[after]\nq1 = Was it long?\nq1_answers = no | yes\n' >"$folder/once.study"
+talk '?\|ok keeps' 'about 30, "or so"
+2
+stop' "$study" "$folder/once.study" --out "$folder/once" --virtual --ask
+[ $? = 1 ] && ! grep -q 'tap ' "$folder/out" || fail "stopped before the first tap: $(cat "$folder/out")"
+talk '?\|ok keeps' 'ok
+2
+ok' "$study" --resume "$folder/once" --virtual --ask || fail "asked once: $(cat "$folder/out" "$folder/err")"
+[ "$(grep -c '?' "$folder/out")" = 1 ] && grep -n 'ok keeps\|tap ' "$folder/out" | cut -d: -f2 | cut -c1-11 | tr '\n' ',' | grep -q '^the answers,P01 tap  1,the answers,$' || fail "asked once, in this order: $(cat "$folder/out")"
+"$study" --resume "$folder/once" --virtual --ask >"$folder/out" 2>&1 </dev/null && ! grep -q '?' "$folder/out" || fail "asked again: $(cat "$folder/out")"
+"${PYTHON:-python3}" - "$folder/once" <<'END' || fail "what was asked once: $(cat "$folder/once/participants.csv")"
+import csv, json, sys
+person, = csv.DictReader(open(sys.argv[1] + "/participants.csv", newline=""))
+assert [person[k] for k in ("before_q1", "before_q2", "after_q1", "status")] == ['about 30, "or so"', "2", "2", "complete"], person
+assert not list(csv.DictReader(open(sys.argv[1] + "/survey.csv")))
+sidecar = json.load(open(sys.argv[1] + "/participants.json"))
+assert list(sidecar) == list(person) and sidecar["before_q2"]["Levels"] == {"1": "left", "2": "right"}, sidecar
+assert "| after_q1 | | Was it long? 1 no; 2 yes |" in open(sys.argv[1] + "/README.md").read()
+END
+
 # ---- one session is ended by mistake, which is undone when the next person sits down; another person doesn't agree; each
 # is begun with its number ----
 printf '[study]\nparticipants = 3\nstrategies = smooth\nspeeds = 0.2\ntraining = 0\ntaps = 1\nattempts = 1\n[device]\nconfig = device.ini\n[hand]\nsource = people\n[pages]\nconsent1 = You may end this.\ninstruction1 = Tap once.\n' >"$folder/undo.study"

@@ -93,9 +93,9 @@ static void put_questionnaire(FILE *file, const ethd__protocol *p) {
   put_truth(file, "own_questions", p->questionnaire.own);
   put_key(file, "questions");
   putc('[', file);
-  for (size_t i = 0; i < ethd__question_count(&p->questionnaire); i++) {
+  for (size_t i = 0; i < ethd__question_count(p->questionnaire.question[ETHD_ASK_BLOCK]); i++) {
     fputs(i ? ",\n    " : "\n    ", file);
-    put_question(file, &p->questionnaire.question[i]);
+    put_question(file, &p->questionnaire.question[ETHD_ASK_BLOCK][i]);
   }
   putc(']', file);
 }

@@ -200,13 +200,12 @@ static void print_answers(const ethd__asked *asked) {
 
 static int ask(void *self, const ethd__asked *asked) {
   ethd__console *c = self;
-  const ethd__questionnaire *q = &c->protocol->questionnaire;
+  const ethd__question *question = &asked->question[asked->number];
   char line[ETHD_MESSAGE_MAX];
-  bool confirm = asked->number == ethd__question_count(q);
-  bool text = !confirm && ethd__question_is_text(&q->question[asked->number]);
-  int most = confirm ? 0 : (int)ethd__answer_count(&q->question[asked->number]);
+  bool confirm = asked->number == asked->count, text = !confirm && ethd__question_is_text(question);
+  int most = confirm ? 0 : (int)ethd__answer_count(question);
   if (!c->ask) return ETHD_ANSWER_NOBODY;
-  (confirm ? print_answers(asked) : print_question(&q->question[asked->number]));
+  (confirm ? print_answers(asked) : print_question(question));
   while (read_line(c, true, line, sizeof line)) {
     if (!strcmp(line, "back")) return ETHD_ANSWER_BACK;
     if (!strcmp(line, "stop")) return ETHD_ANSWER_STOP;

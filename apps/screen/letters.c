@@ -30,19 +30,24 @@ static ethd_status check_list(const char *name, char *const *text, int count, co
   return status;
 }
 
-static ethd_status check_question(int number, const ethd__question *question, const TTF_Font *font, char *message) {
+static ethd_status check_questions(const ethd__questionnaire *q, ethd__asking when, const TTF_Font *font,
+                                   char *message) {
+  const char *section = ethd__asking_sections[when];
   char key[24];
-  snprintf(key, sizeof key, "q%d", number);
-  ethd_status status = check_text("survey", key, question->text, font, message);
-  snprintf(key, sizeof key, "q%d_answers", number);
-  return status ? status : check_text("survey", key, question->answers, font, message);
+  ethd_status status = ETHD_OK;
+  for (int i = 0; !status && i < ETHD_STUDY_QUESTIONS; i++) {
+    snprintf(key, sizeof key, "q%d", i + 1);
+    status = check_text(section, key, q->question[when][i].text, font, message);
+    snprintf(key, sizeof key, "q%d_answers", i + 1);
+    if (!status) status = check_text(section, key, q->question[when][i].answers, font, message);
+  }
+  return status;
 }
 
 ethd_status ethd__letters_check(const ethd__questionnaire *q, const TTF_Font *font, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = check_list("consent", q->consent, ETHD_STUDY_PARAGRAPHS, font, message);
   if (!status) status = check_list("instruction", q->instruction, ETHD_STUDY_PARAGRAPHS, font, message);
-  for (int i = 0; !status && i < ETHD_STUDY_QUESTIONS; i++)
-    status = check_question(i + 1, &q->question[i], font, message);
+  for (int i = 0; !status && i < ETHD_ASKINGS; i++) status = check_questions(q, (ethd__asking)i, font, message);
   for (int i = 0; !status && i < ETHD_PHRASES; i++)
     status = check_text("words", ethd__phrases[i].key, q->phrase[i], font, message);
   return status;

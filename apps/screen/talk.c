@@ -53,6 +53,7 @@ static ethd__wish consent(ethd__screen *s, const char *participant) {
 ethd__wish ethd__screen_meet(void *self, const ethd__meeting *meeting) {
   ethd__screen *s = self;
   const ethd__questionnaire *q = &s->protocol->questionnaire;
+  snprintf(s->title, sizeof s->title, "%s", meeting->participant);
   ethd__wish wish = meeting->handed_over ? hand_over(s, meeting) : ETHD_WISH_GO;
   ethd__page page;
   if (wish == ETHD_WISH_GO && q->consent[0] && !meeting->consented) wish = consent(s, meeting->participant);
@@ -91,12 +92,12 @@ void ethd__page_of_answers(const ethd__questionnaire *q, const ethd__asked *aske
                            char text[ETHD_STUDY_QUESTIONS][256]) {
   char words[200];
   ethd__page_add(out, ETHD_TEXT_LARGE, ethd__phrase_of(q, ETHD_PHRASE_ANSWERS), ethd__white);
-  for (size_t i = 0; i < ethd__question_count(q); i++) {
+  for (size_t i = 0; i < asked->count; i++) {
     words[0] = 0;
-    if (ethd__question_is_text(&q->question[i]))
+    if (ethd__question_is_text(&asked->question[i]))
       snprintf(words, sizeof words, "%.*s", (int)bytes_within(asked->said[i], sizeof words - 1), asked->said[i]);
     else if (asked->answer[i] > 0)
-      ethd__answer_words(&q->question[i], asked->answer[i], words, sizeof words);
+      ethd__answer_words(&asked->question[i], asked->answer[i], words, sizeof words);
     snprintf(text[i], 256, "%zu   %s", i + 1, *words ? words : ethd__phrase_of(q, ETHD_PHRASE_NO_ANSWER));
     ethd__page_add(out, ETHD_TEXT_SMALL, text[i], *words ? ethd__green : ethd__red);
   }
@@ -116,7 +117,7 @@ static int confirm(ethd__screen *s, const ethd__asked *asked) {
 /* A line in the participant's own words, which begins with what was answered before. */
 static int ask_words(ethd__screen *s, const ethd__asked *asked) {
   ethd__page page = {.title = s->title, .keys = ethd__screen_words(s, ETHD_PHRASE_KEYS_TEXT)};
-  ethd__page_add(&page, ETHD_TEXT_LARGE, s->protocol->questionnaire.question[asked->number].text, ethd__white);
+  ethd__page_add(&page, ETHD_TEXT_LARGE, asked->question[asked->number].text, ethd__white);
   snprintf(asked->words, ETHD_MESSAGE_MAX, "%s", asked->said[asked->number]);
   if (ethd__screen_type(s, &page, asked->words, LINE_ROOM)) return *asked->words ? 1 : ETHD_ANSWER_NONE;
   return s->window.key == SDLK_F2 && !s->stop ? ETHD_ANSWER_BACK : ETHD_ANSWER_STOP;
@@ -131,7 +132,7 @@ static int digit_of(int key) {
 
 /* A digit chooses and Enter takes: keys that come fast choose again, and answer one question. */
 static int ask_number(ethd__screen *s, const ethd__asked *asked) {
-  const ethd__question *question = &s->protocol->questionnaire.question[asked->number];
+  const ethd__question *question = &asked->question[asked->number];
   int chosen = asked->answer[asked->number];
   char text[ETHD_STUDY_ANSWERS][256], keys[256], most[24], none[256];
   snprintf(most, sizeof most, "%zu", ethd__answer_count(question));
@@ -153,7 +154,6 @@ static int ask_number(ethd__screen *s, const ethd__asked *asked) {
 
 int ethd__screen_ask(void *self, const ethd__asked *asked) {
   ethd__screen *s = self;
-  const ethd__questionnaire *q = &s->protocol->questionnaire;
-  if (asked->number == ethd__question_count(q)) return confirm(s, asked);
-  return (ethd__question_is_text(&q->question[asked->number]) ? ask_words : ask_number)(s, asked);
+  if (asked->number == asked->count) return confirm(s, asked);
+  return (ethd__question_is_text(&asked->question[asked->number]) ? ask_words : ask_number)(s, asked);
 }

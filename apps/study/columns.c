@@ -112,8 +112,23 @@ static const struct {
   size_t count;
 } tables[ETHD_TABLES] = {ROWS(taps), ROWS(survey), ROWS(events), ROWS(participants), ROWS(orders)};
 
-static size_t questions_of(ethd__study_table table, const ethd__protocol *p) {
-  return table == ETHD_TABLE_SURVEY ? ethd__question_count(&p->questionnaire) : 0;
+/* Calls `each` for the questions whose answers stand in the table. */
+static void each_question(ethd__study_table table, const ethd__protocol *p, FILE *file,
+                          void (*each)(FILE *file, const char *column, const ethd__question *q)) {
+  for (int when = 0; when < ETHD_ASKINGS; when++) {
+    const ethd__question *list = p->questionnaire.question[when];
+    if (table != (when == ETHD_ASK_BLOCK ? ETHD_TABLE_SURVEY : ETHD_TABLE_PARTICIPANTS)) continue;
+    for (size_t i = 0; i < ethd__question_count(list); i++) {
+      char column[24];
+      snprintf(column, sizeof column, "%sq%zu", ethd__asking_columns[when], i + 1);
+      each(file, column, &list[i]);
+    }
+  }
+}
+
+static void put_name(FILE *file, const char *column, const ethd__question *q) {
+  (void)q;
+  fprintf(file, ",%s", column);
 }
 
 /* Whether the table belongs to a simulation, which has more columns. */
@@ -152,7 +167,7 @@ char *ethd__table_header(ethd__study_table table, const ethd__protocol *protocol
   FILE *file = open_memstream(&text, &length);
   if (!file) ethd__fail_memory();
   for (size_t i = 0; i < tables[table].count; i++) fprintf(file, "%s%s", i ? "," : "", tables[table].row[i].name);
-  for (size_t i = 0; i < questions_of(table, protocol); i++) fprintf(file, ",q%zu", i + 1);
+  each_question(table, protocol, file, put_name);
   bool failed = ferror(file);
   if (fclose(file) || failed) ethd__fail_memory();
   return text;
@@ -174,21 +189,22 @@ static void describe(FILE *file, const study_column *columns, size_t count) {
     fprintf(file, "| %s | %s | %s |\n", columns[i].name, columns[i].unit, columns[i].meaning);
 }
 
+static void describe_question(FILE *file, const char *column, const ethd__question *q) {
+  char words[256];
+  fprintf(file, "| %s | | %s%s", column, q->text, ethd__question_is_text(q) ? " In words." : "");
+  for (int k = 1; k <= (int)ethd__answer_count(q); k++) {
+    ethd__answer_words(q, k, words, sizeof words);
+    fprintf(file, "%s %d %s", k > 1 ? ";" : "", k, words);
+  }
+  fputs(" |\n", file);
+}
+
 void ethd__table_describe(FILE *file, ethd__study_table table, const ethd__table_scope *scope) {
   fputs("| column | unit | meaning |\n|---|---|---|\n", file);
   if (is_simulated(table, scope)) describe(file, simulation, sizeof simulation / sizeof *simulation);
   describe(file, tables[table].row, tables[table].count);
   if (is_simulated(table, scope)) describe_gains(file, scope);
-  for (size_t i = 0; i < questions_of(table, scope->protocol); i++) {
-    const ethd__question *q = &scope->protocol->questionnaire.question[i];
-    char words[256];
-    fprintf(file, "| q%zu | | %s%s", i + 1, q->text, ethd__question_is_text(q) ? " In words." : "");
-    for (int k = 1; k <= (int)ethd__answer_count(q); k++) {
-      ethd__answer_words(q, k, words, sizeof words);
-      fprintf(file, "%s %d %s", k > 1 ? ";" : "", k, words);
-    }
-    fputs(" |\n", file);
-  }
+  each_question(table, scope->protocol, file, describe_question);
 }
 
 /* ---- for programs ---- */
@@ -206,9 +222,9 @@ static void put_levels(FILE *file, const char *levels) {
   fputs("\n    }", file);
 }
 
-static void put_question(FILE *file, size_t number, const ethd__question *q) {
+static void put_question(FILE *file, const char *column, const ethd__question *q) {
   char words[256];
-  fprintf(file, ",\n  \"q%zu\": {\n    \"Description\": ", number);
+  fprintf(file, ",\n  \"%s\": {\n    \"Description\": ", column);
   ethd__json_word(file, q->text);
   if (ethd__question_is_text(q)) {
     fputs("\n  }", file);
@@ -275,7 +291,7 @@ void ethd__table_sidecar(FILE *file, ethd__study_table table, const ethd__table_
   for (size_t i = 0; i < before; i++) put_column(file, &simulation[i], p, i ? "," : "");
   for (size_t i = 0; i < tables[table].count; i++) put_column(file, &tables[table].row[i], p, before || i ? "," : "");
   for (size_t i = 0; before && i < p->axis_count; i++) put_gain(file, &p->axes[i], scope->setup);
-  for (size_t i = 0; i < questions_of(table, p); i++) put_question(file, i + 1, &p->questionnaire.question[i]);
+  each_question(table, p, file, put_question);
   fputs("\n}\n", file);
 }
 

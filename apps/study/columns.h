@@ -20,7 +20,7 @@ typedef enum ethd__study_table {
 extern const char *const ethd__table_names[ETHD_TABLES];
 
 /* Returns a table's header, "participant,block,..", which the caller frees; exit 1 without memory. The survey's ends
-   with q1, q2 .. of the study. Rows must follow its order. */
+   with q1, q2 .. of the study, that of participants with before_q1 .. after_q1 ..  Rows must follow its order. */
 char *ethd__table_header(ethd__study_table table, const ethd__protocol *protocol);
 
 /* Does the same for a simulation's taps, which have more columns: study, point, those of taps, and the grid's gains. */

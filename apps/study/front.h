@@ -33,11 +33,11 @@ typedef struct ethd__tally {
   const char *checked; /* "accept", "reject"; NULL: nothing */
 } ethd__tally;
 
-/* A question that is due; number == the count of questions: the answers are to be confirmed. */
+/* A question that is due; number == count: the answers are to be confirmed. */
 typedef struct ethd__asked {
   const char *participant;
-  const ethd__turn *turn;
-  size_t number;
+  const ethd__question *question; /* all of them */
+  size_t count, number;
   const int16_t *answer;                  /* to each question so far, ETHD_ANSWER_UNASKED: not yet */
   const char *said[ETHD_STUDY_QUESTIONS]; /* the words of those that ask for words, "": none */
   char *words;                            /* room for ETHD_MESSAGE_MAX bytes of an answer in words */

@@ -23,8 +23,8 @@ static ethd_status read_blocks(ethd__study_store *store, ethd__participant *who,
   sqlite3_bind_int64(row, 1, who->person + 1);
   while (ethd__store_next(row)) {
     int number = sqlite3_column_int(row, 0);
-    if (number < 1 || number > ETHD_STUDY_BLOCKS) continue;
-    ethd__progress_of *at = &who->at[number - 1];
+    if (number < 0 || number > ETHD_STUDY_BLOCKS + 1) continue;
+    ethd__progress_of *at = &who->at[number];
     at->taken += (uint32_t)sqlite3_column_int64(row, 1);
     at->valid += (uint32_t)sqlite3_column_int64(row, 2);
     at->surveyed |= sqlite3_column_int(row, 3);
@@ -82,27 +82,40 @@ ethd_status ethd__hands_of(ethd__study_store *store, bool out[ETHD_HAND_SOURCES]
 }
 
 /* SQL that finds rows of a participant, a block or a point that the study lacks; a cell that is no integer is beyond. */
-#define BEYOND(table) \
-  "EXISTS (SELECT 1 FROM " table " WHERE participant NOT BETWEEN 1 AND ?1 OR block NOT BETWEEN 1 AND ?2)"
+#define BEYOND(table, first, last) \
+  "EXISTS (SELECT 1 FROM " table " WHERE participant NOT BETWEEN 1 AND ?1 OR block NOT BETWEEN " first " AND " last ")"
 
-static const char odd_rows[] = "SELECT " BEYOND("tap") " OR " BEYOND("answer") " OR " BEYOND("survey") " OR " BEYOND(
-    "event") " OR EXISTS (SELECT 1 FROM tap WHERE point NOT BETWEEN 0 AND ?3)"
-             " OR EXISTS (SELECT 1 FROM tap GROUP BY point, participant, block HAVING max(attempt) <> count(*) OR "
-             "min(attempt) <> 1)"
-             " OR EXISTS (SELECT 1 FROM event WHERE attempt NOTNULL AND NOT EXISTS (SELECT 1 FROM tap WHERE point = 0 "
-             "AND valid AND tap.participant = event.participant AND tap.block = event.block AND tap.attempt = "
-             "event.attempt))"
-             " OR EXISTS (SELECT 1 FROM tap GROUP BY participant HAVING min(hand) <> max(hand))"
-             " OR EXISTS (SELECT 1 FROM answer WHERE question NOT BETWEEN 1 AND ?4 OR number NOT BETWEEN 0 AND 9)";
+static const char odd_rows[] = "SELECT " BEYOND("tap", "1", "?2") " OR " BEYOND("answer", "0", "?2 + 1") " OR " BEYOND(
+    "survey", "0",
+    "?2 + 1") " OR " BEYOND("event", "1",
+                            "?2") " OR EXISTS (SELECT 1 FROM tap WHERE point NOT BETWEEN 0 AND ?3)"
+                                  " OR EXISTS (SELECT 1 FROM tap GROUP BY point, participant, block HAVING "
+                                  "max(attempt) <> count(*) OR "
+                                  "min(attempt) <> 1)"
+                                  " OR EXISTS (SELECT 1 FROM event WHERE attempt NOTNULL AND NOT EXISTS (SELECT 1 FROM "
+                                  "tap WHERE point = 0 "
+                                  "AND valid AND tap.participant = event.participant AND tap.block = event.block AND "
+                                  "tap.attempt = "
+                                  "event.attempt))"
+                                  " OR EXISTS (SELECT 1 FROM tap GROUP BY participant HAVING min(hand) <> max(hand))"
+                                  " OR EXISTS (SELECT 1 FROM answer WHERE question NOT BETWEEN 1 AND 9 OR number NOT "
+                                  "BETWEEN 0 AND 9)";
 
-/* A question's answers are numbered up to its own last one. */
-static ethd_status check_answers(ethd__study_store *store, const ethd__protocol *p, bool *odd, char *message) {
+/* A question's answers are numbered up to its own last one; a question that isn't there has none. */
+static ethd_status check_answers(ethd__study_store *store, const ethd__protocol *p, size_t blocks, bool *odd,
+                                 char *message) {
+  const size_t first[ETHD_ASKINGS] = {0, 1, blocks + 1}, last[ETHD_ASKINGS] = {0, blocks, blocks + 1};
   ethd_status status = ETHD_OK;
-  for (size_t i = 0; !status && !*odd && i < ethd__question_count(&p->questionnaire); i++) {
-    const ethd__question *asked = &p->questionnaire.question[i];
-    sqlite3_stmt *row = ethd__store_query(store, "SELECT 1 FROM answer WHERE question = ? AND number > ?");
-    sqlite3_bind_int64(row, 1, (int64_t)i + 1);
-    sqlite3_bind_int64(row, 2, ethd__question_is_text(asked) ? 1 : (int64_t)ethd__answer_count(asked));
+  for (size_t i = 0; !status && !*odd && i < ETHD_ASKINGS * ETHD_STUDY_QUESTIONS; i++) {
+    size_t when = i / ETHD_STUDY_QUESTIONS, number = i % ETHD_STUDY_QUESTIONS;
+    const ethd__question *asked = &p->questionnaire.question[when][number];
+    int64_t most = !asked->text ? -1 : ethd__question_is_text(asked) ? 1 : (int64_t)ethd__answer_count(asked);
+    sqlite3_stmt *row =
+        ethd__store_query(store, "SELECT 1 FROM answer WHERE block BETWEEN ? AND ? AND question = ? AND number > ?");
+    sqlite3_bind_int64(row, 1, (int64_t)first[when]);
+    sqlite3_bind_int64(row, 2, (int64_t)last[when]);
+    sqlite3_bind_int64(row, 3, (int64_t)number + 1);
+    sqlite3_bind_int64(row, 4, most);
     *odd = ethd__store_next(row);
     status = ethd__store_end(store, row, message);
   }
@@ -113,12 +126,12 @@ static ethd_status check(ethd__study_store *store, const ethd__protocol *p, char
   ethd__study_block blocks[ETHD_STUDY_BLOCKS];
   sqlite3_stmt *row = ethd__store_query(store, odd_rows);
   sqlite3_bind_int64(row, 1, p->participants);
-  sqlite3_bind_int64(row, 2, (int64_t)ethd__order_of(p, 0, blocks));
+  size_t count = ethd__order_of(p, 0, blocks);
+  sqlite3_bind_int64(row, 2, (int64_t)count);
   sqlite3_bind_int64(row, 3, (int64_t)ethd__protocol_points(p) - 1);
-  sqlite3_bind_int64(row, 4, (int64_t)ethd__question_count(&p->questionnaire));
   bool odd = ethd__store_next(row) && sqlite3_column_int(row, 0);
   ethd_status status = ethd__store_end(store, row, message);
-  if (!status) status = check_answers(store, p, &odd, message);
+  if (!status) status = check_answers(store, p, count, &odd, message);
   return !status && odd ? ethd__say(message, ETHD_E_SYNTAX, "%s: has rows that aren't of this study", store->path)
                         : status;
 }

@@ -16,8 +16,9 @@ typedef struct ethd__progress_of {
 
 typedef struct ethd__participant {
   uint32_t person;
-  ethd__progress_of at[ETHD_STUDY_BLOCKS]; /* by block */
-  bool in;                                 /* the taps go on, and belong to the analysis */
+  ethd__progress_of
+      at[ETHD_STUDY_BLOCKS + 2]; /* by block, from 1; 0 and the one behind: the questions of [before], [after] */
+  bool in;                       /* the taps go on, and belong to the analysis */
   bool consented;
 } ethd__participant;
 
@@ -37,7 +38,7 @@ ETHD_MUST_CHECK ethd_status ethd__participant_of(ethd__study_store *store, uint3
 /* Answers to a question of the survey, beside 1 to 9. An answer in words counts as 1. */
 enum { ETHD_ANSWER_UNASKED = -1, ETHD_ANSWER_NONE = 0 };
 
-/* A block's answers so far. */
+/* A block's answers so far; of those to [before] and [after] the blocks are 0 and the one behind the last. */
 typedef struct ethd__said {
   int16_t number[ETHD_STUDY_QUESTIONS];
   char words[ETHD_STUDY_QUESTIONS][ETHD_MESSAGE_MAX]; /* "": none */

@@ -47,8 +47,8 @@ static ethd_status known_sections(const ethd_ini *ini, const char *name, char *m
     const ethd_ini_section *s = &ini->sections[i];
     if (!ethd__entry_section(s->name))
       return ethd__say(message, ETHD_E_UNKNOWN,
-                       "%s:%d: %s: unknown section; study, device, hand, validity, statistics, survey, pages, words, "
-                       "grid are allowed",
+                       "%s:%d: %s: unknown section; study, device, hand, validity, statistics, before, survey, after, "
+                       "pages, words, grid are allowed",
                        name, s->line, ethd__quote(s->name, strlen(s->name), quote));
   }
   return ETHD_OK;
@@ -57,11 +57,12 @@ static ethd_status known_sections(const ethd_ini *ini, const char *name, char *m
 /* Checks that a questionnaire is complete and that study.survey has it asked. */
 static ethd_status check_questions(const ethd__entry *last, const ethd__protocol *p) {
   const char *what;
-  int fault = ethd__questionnaire_fault(&p->questionnaire, &what);
-  if (fault < 0 && (!p->questionnaire.own || p->survey)) return ETHD_OK;
-  int line = p->questionnaire.question[fault < 0 ? 0 : fault].line;
-  return ethd__say(last->message, ETHD_E_RANGE, "%s:%d: survey.q%d: %s", last->file, line, fault < 0 ? 1 : fault + 1,
-                   fault < 0 ? "stands there without study.survey = on" : what);
+  char name[24];
+  const ethd__question *fault = ethd__questionnaire_fault(&p->questionnaire, &what, name);
+  if (!fault && (!p->questionnaire.own || p->survey)) return ETHD_OK;
+  if (fault) return ethd__say(last->message, ETHD_E_RANGE, "%s:%d: %s: %s", last->file, fault->line, name, what);
+  return ethd__say(last->message, ETHD_E_RANGE, "%s:%d: survey.q1: stands there without study.survey = on", last->file,
+                   p->questionnaire.question[ETHD_ASK_BLOCK][0].line);
 }
 
 /* Checks the relations between keys. */

@@ -17,7 +17,8 @@
      [device]                             [grid]                  --simulate: every combination
      config = n.ini                       contact.k_e = 1000,2500
      plant = n
-                                          [survey], [pages], [words]: see questionnaire.h
+                                          [before], [survey], [after], [pages],
+                                          [words]: see questionnaire.h
 
      [statistics]                         how far two strategies may differ and still be called alike:
      margin_d_max = 0.0003                m: what the paper's sensors resolve

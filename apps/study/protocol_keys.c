@@ -183,7 +183,7 @@ static const key_row *find_row(const char *section, const char *key) {
 }
 
 static bool has_own_words(const char *section) {
-  return !strcmp(section, "survey") || !strcmp(section, "pages") || !strcmp(section, "words");
+  return ethd__asking_of(section) < ETHD_ASKINGS || !strcmp(section, "pages") || !strcmp(section, "words");
 }
 
 static ethd_status set_axis(const ethd__entry *e) {
@@ -224,15 +224,16 @@ static ethd_status check_places(const ethd__entry *e, const char *instead_of) {
 
 static ethd_status set_own_words(const ethd__entry *e) {
   char **at = ethd__questionnaire_at(&e->out->questionnaire, e->key->section, e->key->key);
-  bool survey = !strcmp(e->key->section, "survey"), phrase = !strcmp(e->key->section, "words");
+  const ethd__asking when = ethd__asking_of(e->key->section);
+  bool asked = when < ETHD_ASKINGS, phrase = !strcmp(e->key->section, "words");
   if (!at)
     return ethd__entry_refuse(e, ETHD_E_UNKNOWN, "no key of this section; %s are allowed",
-                              survey   ? "q1 to q9, q1_answers to q9_answers"
+                              asked    ? "q1 to q9, q1_answers to q9_answers"
                               : phrase ? "those that ethd-study --words prints"
                                        : "consent1 to consent9, instruction1 to instruction9");
   ethd_status status = check_words(e);
   if (!status && phrase) status = check_places(e, ethd__phrases[at - e->out->questionnaire.phrase].words);
-  if (survey) e->out->questionnaire.question[e->key->key[1] - '1'].line = e->key->line;
+  if (asked) e->out->questionnaire.question[when][e->key->key[1] - '1'].line = e->key->line;
   return status ? status : set_text(e, NULL, at);
 }
 

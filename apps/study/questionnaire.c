@@ -8,9 +8,18 @@
 
 #define BARE 5 /* answers of a question without words for them */
 
-size_t ethd__question_count(const ethd__questionnaire *q) {
+const char *const ethd__asking_sections[ETHD_ASKINGS] = {"before", "survey", "after"};
+const char *const ethd__asking_columns[ETHD_ASKINGS] = {"before_", "", "after_"};
+
+ethd__asking ethd__asking_of(const char *section) {
+  int i = 0;
+  while (i < ETHD_ASKINGS && strcmp(section, ethd__asking_sections[i])) i++;
+  return (ethd__asking)i;
+}
+
+size_t ethd__question_count(const ethd__question *list) {
   size_t n = 0;
-  while (n < ETHD_STUDY_QUESTIONS && q->question[n].text) n++;
+  while (n < ETHD_STUDY_QUESTIONS && list[n].text) n++;
   return n;
 }
 
@@ -89,9 +98,10 @@ static int number_of(const char *key, const char *name, const char *behind) {
 
 char **ethd__questionnaire_at(ethd__questionnaire *q, const char *section, const char *key) {
   int k;
-  if (!strcmp(section, "survey")) {
-    if ((k = number_of(key, "q", ""))) return &q->question[k - 1].text;
-    if ((k = number_of(key, "q", "_answers"))) return &q->question[k - 1].answers;
+  ethd__asking when = ethd__asking_of(section);
+  if (when < ETHD_ASKINGS) {
+    if ((k = number_of(key, "q", ""))) return &q->question[when][k - 1].text;
+    if ((k = number_of(key, "q", "_answers"))) return &q->question[when][k - 1].answers;
   }
   if (!strcmp(section, "pages")) {
     if ((k = number_of(key, "consent", ""))) return &q->consent[k - 1];
@@ -103,34 +113,38 @@ char **ethd__questionnaire_at(ethd__questionnaire *q, const char *section, const
 }
 
 bool ethd__questionnaire_fill(ethd__questionnaire *q) {
-  for (int i = 0; i < ETHD_STUDY_QUESTIONS; i++) q->own |= q->question[i].text || q->question[i].answers;
+  ethd__question *list = q->question[ETHD_ASK_BLOCK];
+  for (int i = 0; i < ETHD_STUDY_QUESTIONS; i++) q->own |= list[i].text || list[i].answers;
   if (q->own) return true;
   for (int i = 0; i < 3; i++) {
-    q->question[i].text = strdup(ethd__paper_questions[i].text);
-    q->question[i].answers = strdup(ethd__paper_questions[i].answers);
-    if (!q->question[i].text || !q->question[i].answers) return false;
+    list[i].text = strdup(ethd__paper_questions[i].text);
+    list[i].answers = strdup(ethd__paper_questions[i].answers);
+    if (!list[i].text || !list[i].answers) return false;
   }
   return true;
 }
 
-int ethd__questionnaire_fault(const ethd__questionnaire *q, const char **what) {
-  size_t count = ethd__question_count(q);
-  for (int i = 0; i < ETHD_STUDY_QUESTIONS; i++) {
-    const ethd__question *question = &q->question[i];
+const ethd__question *ethd__questionnaire_fault(const ethd__questionnaire *q, const char **what, char name[24]) {
+  for (int k = 0; k < ETHD_ASKINGS * ETHD_STUDY_QUESTIONS; k++) {
+    int when = k / ETHD_STUDY_QUESTIONS, i = k % ETHD_STUDY_QUESTIONS;
+    const ethd__question *question = &q->question[when][i];
+    size_t count = ethd__question_count(q->question[when]);
+    snprintf(name, 24, "%s.q%d", ethd__asking_sections[when], i + 1);
     size_t answers = ethd__answer_count(question);
     *what = answers == 1                   ? "one answer; \"this | that\", two to nine, or text are allowed"
             : answers > ETHD_STUDY_ANSWERS ? "over nine answers"
                                            : "stands there without the questions before it";
     bool stray = (size_t)i >= count && (question->text || question->answers);
-    if (answers == 1 || answers > ETHD_STUDY_ANSWERS || stray) return i;
+    if (answers == 1 || answers > ETHD_STUDY_ANSWERS || stray) return question;
   }
-  return -1;
+  return NULL;
 }
 
 void ethd__questionnaire_free(ethd__questionnaire *q) {
-  for (int i = 0; i < ETHD_STUDY_QUESTIONS; i++) {
-    free(q->question[i].text);
-    free(q->question[i].answers);
+  for (int i = 0; i < ETHD_ASKINGS * ETHD_STUDY_QUESTIONS; i++) {
+    ethd__question *question = &q->question[i / ETHD_STUDY_QUESTIONS][i % ETHD_STUDY_QUESTIONS];
+    free(question->text);
+    free(question->answers);
   }
   for (int i = 0; i < ETHD_STUDY_PARAGRAPHS; i++) {
     free(q->consent[i]);

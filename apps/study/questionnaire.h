@@ -1,9 +1,10 @@
 /* What a participant is told and asked, in the study's own words. [main] but where said.
 
-     [survey]                                     [pages]                          and [words], see phrases.h
+     [before], [survey], [after]                  [pages]                          and [words], see phrases.h
      q1 = How did the touch feel?                 consent1 = The study takes an hour. You may end it at any time.
      q1_answers = natural | neither | unnatural   instruction1 = Tap once on the green wall.
 
+   Those of [survey] are asked after each block, the others once, before the first tap and after the last one.
    Questions are q1 to q9 without a gap; answers are numbered from 1, two to nine of them, five bare numbers without
    q1_answers. "q1_answers = text" asks for a line in the participant's own words. A page has up to nine paragraphs,
    consent1 to consent9 and instruction1 to instruction9. */
@@ -24,15 +25,21 @@ typedef struct ethd__question {
   int line;             /* of the file */
 } ethd__question;
 
+/* When questions are asked. */
+typedef enum ethd__asking { ETHD_ASK_BEFORE, ETHD_ASK_BLOCK, ETHD_ASK_AFTER, ETHD_ASKINGS } ethd__asking;
+
+/* Their sections; what stands before q1 and so on in the tables. [any] */
+extern const char *const ethd__asking_sections[ETHD_ASKINGS], *const ethd__asking_columns[ETHD_ASKINGS];
+
 typedef struct ethd__questionnaire {
-  ethd__question question[ETHD_STUDY_QUESTIONS];
+  ethd__question question[ETHD_ASKINGS][ETHD_STUDY_QUESTIONS];
   char *consent[ETHD_STUDY_PARAGRAPHS], *instruction[ETHD_STUDY_PARAGRAPHS];
   char *phrase[ETHD_PHRASES]; /* NULL: the default */
-  bool own;                   /* questions of the study's own, not the paper's */
+  bool own;                   /* [survey] has questions of the study's own, not the paper's */
 } ethd__questionnaire;
 
 /* How many questions there are, and numbered answers to one of them: 0 where words are asked for. [any] */
-size_t ethd__question_count(const ethd__questionnaire *q);
+size_t ethd__question_count(const ethd__question *list);
 size_t ethd__answer_count(const ethd__question *question);
 bool ethd__question_is_text(const ethd__question *question);
 
@@ -42,14 +49,18 @@ void ethd__answer_words(const ethd__question *question, int answer, char *out, s
 /* Returns words of the screen: the study's own or the default. [any] */
 const char *ethd__phrase_of(const ethd__questionnaire *q, ethd__phrase_name name);
 
-/* Returns where the text of a key of [survey], [pages] or [words] is; NULL: there is no such key. */
+/* Returns when the questions of a section are asked; ETHD_ASKINGS: it has none. [any] */
+ethd__asking ethd__asking_of(const char *section);
+
+/* Returns where the text of a key of these sections, [pages] or [words] is; NULL: there is no such key. */
 char **ethd__questionnaire_at(ethd__questionnaire *q, const char *section, const char *key);
 
 /* Puts in the paper's questions, in our own words, if the study has none. False: no memory. */
 bool ethd__questionnaire_fill(ethd__questionnaire *q);
 
-/* Returns a question that has too few or too many answers, or none before it, and *what says which; -1: all is well. */
-int ethd__questionnaire_fault(const ethd__questionnaire *q, const char **what);
+/* Returns a question that has too few or too many answers, or none before it, and *what says which; NULL: all is well.
+   name: its key, such as survey.q2. */
+const ethd__question *ethd__questionnaire_fault(const ethd__questionnaire *q, const char **what, char name[24]);
 
 void ethd__questionnaire_free(ethd__questionnaire *q);
 

@@ -40,7 +40,7 @@ static ethd_status have_tap(ethd__sitting *s, const char *id, const ethd__turn *
 /* Tells how the latest tap was. */
 static void tell(ethd__sitting *s) {
   const ethd__turn *turn = &s->latest.turn;
-  const ethd__progress_of *at = &s->who.at[turn->number - 1];
+  const ethd__progress_of *at = &s->who.at[turn->number];
   char id[ETHD_STUDY_ID_MAX];
   ethd__participant_id(&s->folder->protocol, turn->person, id);
   s->front.verdict(s->front.self, id, &s->latest,
@@ -141,7 +141,7 @@ static ethd_status meet(ethd__sitting *s, const char *id, bool *stop, char *mess
 /* ---- blocks, people ---- */
 
 static bool block_due(const ethd__sitting *s, const ethd__turn *turn) {
-  const ethd__progress_of *at = &s->who.at[turn->number - 1];
+  const ethd__progress_of *at = &s->who.at[turn->number];
   return s->who.in && !ethd__block_over(&s->folder->protocol, &turn->block, at->taken, at->valid);
 }
 
@@ -153,7 +153,7 @@ static ethd_status run_block(ethd__sitting *s, const char *id, ethd__turn *turn,
   if (!left) s->front.block(s->front.self, id, turn, rest);
   while (!status && !*stop && !left && s->who.in) {
     bool over = !block_due(s, turn), go = false;
-    turn->attempt = s->who.at[turn->number - 1].taken + 1;
+    turn->attempt = s->who.at[turn->number].taken + 1;
     if (!over) status = see_to_device(s, turn, message);
     if (!status) status = hear(s, turn, over, &go, stop, message);
     if (!status && go && !over) status = run_tap(s, id, turn, message);
@@ -173,12 +173,14 @@ static ethd_status run_person(ethd__sitting *s, uint32_t person, bool *stop, cha
   s->checked = NULL;
   do {
     s->again = false;
-    for (size_t i = 0; !status && !*stop && i < count; i++) {
-      ethd__turn turn = {.person = person, .number = i + 1, .of = count, .block = blocks[i]};
-      if (!block_due(s, &turn) && !ethd__survey_due(s, &turn)) continue;
+    for (size_t i = 0; !status && !*stop && i < count + 2 && !(i > count && s->again); i++) {
+      bool taps = i >= 1 && i <= count; /* or only questions, before and after */
+      ethd__turn turn = {.person = person, .number = i, .of = count, .block = blocks[taps ? i - 1 : 0]};
+      if (!(taps && block_due(s, &turn)) && !ethd__survey_due(s, &turn)) continue;
       if (!met) status = meet(s, id, stop, message);
       met = true;
-      if (!status && !*stop && s->who.in) status = run_block(s, id, &turn, stop, message);
+      if (status || *stop || !s->who.in) continue;
+      status = taps ? run_block(s, id, &turn, stop, message) : ethd__survey_run(s, id, &turn, stop, message);
     }
   } while (!status && !*stop && s->again);
   return status;

@@ -84,16 +84,21 @@ static void select_taps(FILE *sql, const ethd__folder *folder) {
   fputs(folder->simulated ? " FROM tap ORDER BY point, participant, block, attempt" : " FROM tap ORDER BY id", sql);
 }
 
-/* 0: no answer was given. */
-static void select_survey(FILE *sql, const ethd__folder *folder) {
-  fputs("SELECT id(participant), block, transition(participant, block), speed(participant, block)", sql);
-  for (size_t i = 1; i <= ethd__question_count(&folder->protocol.questionnaire); i++)
+/* The columns of answers to these questions; 0: none was given. */
+static void select_answers(FILE *sql, const ethd__question *list, const char *participant, const char *block) {
+  for (size_t i = 1; i <= ethd__question_count(list); i++)
     fprintf(
         sql,
-        ", (SELECT coalesce(words, nullif(number, 0)) FROM answer WHERE answer.participant = survey.participant AND "
-        "answer.block = survey.block AND question = %zu)",
-        i);
-  fputs(" FROM survey ORDER BY id", sql);
+        ", (SELECT coalesce(words, nullif(number, 0)) FROM answer WHERE answer.participant = %s AND answer.block = %s "
+        "AND question = %zu)",
+        participant, block, i);
+}
+
+static void select_survey(FILE *sql, const ethd__folder *folder) {
+  fputs("SELECT id(participant), block, transition(participant, block), speed(participant, block)", sql);
+  ethd__study_block blocks[ETHD_STUDY_BLOCKS];
+  select_answers(sql, folder->protocol.questionnaire.question[ETHD_ASK_BLOCK], "survey.participant", "survey.block");
+  fprintf(sql, " FROM survey WHERE block BETWEEN 1 AND %zu ORDER BY id", ethd__order_of(&folder->protocol, 0, blocks));
 }
 
 static void select_events(FILE *sql, const ethd__folder *folder) {
@@ -101,10 +106,13 @@ static void select_events(FILE *sql, const ethd__folder *folder) {
   fputs("SELECT utc, id(participant), block, attempt, event, detail FROM event ORDER BY id", sql);
 }
 
-/* Everybody has a row who has tapped or about whom something was decided, then with its reason. */
+/* Everybody has a row who has tapped or answered, or about whom something was decided, then with its reason. */
 static void select_participants(FILE *sql, const ethd__folder *folder) {
   const ethd__protocol *p = &folder->protocol;
   ethd__study_block blocks[ETHD_STUDY_BLOCKS];
+  const size_t count = ethd__order_of(p, 0, blocks);
+  char behind[24];
+  snprintf(behind, sizeof behind, "%zu", count + 1);
   fprintf(
       sql,
       "WITH decided AS (SELECT participant, event, detail FROM event WHERE id IN (SELECT max(id) FROM event WHERE "
@@ -122,10 +130,14 @@ static void select_participants(FILE *sql, const ethd__folder *folder) {
       " (SELECT hand FROM tap WHERE point = 0 AND tap.participant = people.participant LIMIT 1),"
       " coalesce(taps, 0), coalesce(valid, 0), coalesce(accepted, 0), coalesce(rejected, 0),"
       " (SELECT utc FROM tap WHERE point = 0 AND tap.participant = people.participant ORDER BY id LIMIT 1),"
-      " (SELECT utc FROM tap WHERE point = 0 AND tap.participant = people.participant ORDER BY id DESC LIMIT 1)"
-      " FROM (SELECT participant FROM tapped UNION SELECT participant FROM decided) AS people"
-      " LEFT JOIN tapped USING (participant) LEFT JOIN decided USING (participant) ORDER BY participant",
-      p->taps, p->attempts, p->training, ethd__order_of(p, 0, blocks));
+      " (SELECT utc FROM tap WHERE point = 0 AND tap.participant = people.participant ORDER BY id DESC LIMIT 1)",
+      p->taps, p->attempts, p->training, count);
+  select_answers(sql, p->questionnaire.question[ETHD_ASK_BEFORE], "people.participant", "0");
+  select_answers(sql, p->questionnaire.question[ETHD_ASK_AFTER], "people.participant", behind);
+  fputs(" FROM (SELECT participant FROM tapped UNION SELECT participant FROM decided UNION SELECT participant FROM "
+        "answer) "
+        "AS people LEFT JOIN tapped USING (participant) LEFT JOIN decided USING (participant) ORDER BY participant",
+        sql);
 }
 
 /* NULL: the table was written as the folder was made. */

@@ -100,12 +100,12 @@ static void check_questions(void) {
   char text[ETHD_STUDY_ANSWERS][256];
   ethd__questionnaire q = {.own = false};
   const int16_t answer[ETHD_STUDY_QUESTIONS] = {1, 0, 5};
-  const ethd__asked asked = {.answer = answer};
+  const ethd__asked asked = {.question = q.question[ETHD_ASK_BLOCK], .count = 3, .answer = answer};
   ck_assert(ethd__questionnaire_fill(&q));
   for (int i = 0; i < 3; i++) {
     ethd__page page = {.title = title,
                        .keys = "1 to 5 choose, 0 no answer   Enter goes on   Backspace back   Esc stops"};
-    ethd__page_of_question(&q.question[i], 2, &page, text);
+    ethd__page_of_question(&q.question[ETHD_ASK_BLOCK][i], 2, &page, text);
     draw(i == 0 ? "question1" : i == 1 ? "question2" : "question3", &page, 8);
   }
   ethd__page page = {.title = title, .keys = "Enter keeps them   Backspace changes them   Esc stops"};
@@ -182,11 +182,14 @@ static void judge_taps(void) {
 static void ask_in_german(void) {
   const ethd__questionnaire *q = &protocol.questionnaire;
   const int16_t answer[ETHD_STUDY_QUESTIONS] = {1, 5, 0, 1};
-  const ethd__asked asked = {.answer = answer, .said = {"", "", "", "Die Wand fühlte sich weich an."}};
+  const ethd__asked asked = {.question = q->question[ETHD_ASK_BLOCK],
+                             .count = 4,
+                             .answer = answer,
+                             .said = {"", "", "", "Die Wand fühlte sich weich an."}};
   char text[ETHD_STUDY_ANSWERS][256];
   for (int i = 0; i < 3; i++) {
     ethd__page page = {.title = screen.title, .keys = ethd__screen_words(&screen, ETHD_PHRASE_KEYS_TEXT)};
-    ethd__page_of_question(&q->question[i], 2, &page, text);
+    ethd__page_of_question(&q->question[ETHD_ASK_BLOCK][i], 2, &page, text);
     draw_german(i ? "german-question2" : "german-question1", &page, 8);
   }
   ethd__page page = {.title = screen.title, .keys = ethd__screen_words(&screen, ETHD_PHRASE_KEYS_ANSWERS)};
