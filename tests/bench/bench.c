@@ -14,8 +14,6 @@
 #include "ethd/ethd.h"
 #include "text/text.h"
 
-int64_t ethd__bench_now(void) { return ethd__clock_now(); }
-
 static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
@@ -25,7 +23,7 @@ double ethd__bench_clock_cost(void) {
   enum { MANY = 10001 };
   static double cost[MANY];
   for (int i = 0; i < MANY; i++) {
-    int64_t a = ethd__bench_now(), b = ethd__bench_now();
+    int64_t a = ethd__clock_now(), b = ethd__clock_now();
     cost[i] = (double)(b - a);
   }
   qsort(cost, MANY, sizeof *cost, ascending);
@@ -41,9 +39,9 @@ volatile double ethd__bench_sink;
 enum { TURNS_MAX = 20000, ENTRIES_MAX = 64 };
 
 static double turn(const ethd__bench_entry *e, int repeats) {
-  int64_t start = ethd__bench_now();
+  int64_t start = ethd__clock_now();
   for (int i = 0; i < repeats; i++) e->work(e->data);
-  return (double)(ethd__bench_now() - start);
+  return (double)(ethd__clock_now() - start);
 }
 
 /* Doubles the repeats until a turn is long enough. */
@@ -75,21 +73,6 @@ ethd__bench_times ethd__bench_percentiles(double *ns, size_t count) {
   ethd__bench_times t = {sum / (double)count, ns[count / 2], ns[count - 1 - count / 100], ns[count - 1 - count / 1000],
                          ns[count - 1]};
   return t;
-}
-
-/* ---- random numbers ---- */
-
-static uint64_t bits(uint64_t i) {
-  uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
-  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-  return z ^ z >> 31;
-}
-
-double ethd__bench_draw(uint64_t i, double a, double b) { return a + (b - a) * ((double)(bits(i) >> 11) * 0x1p-53); }
-
-double ethd__bench_normal(uint64_t i) {
-  return sqrt(-2 * log(1 - ethd__bench_draw(2 * i, 0, 1))) * cos(2 * M_PI * ethd__bench_draw(2 * i + 1, 0, 1));
 }
 
 /* ---- peers ---- */

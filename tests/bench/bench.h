@@ -23,9 +23,6 @@ void ethd__bench_fits(const char *folder, int quick);
 void ethd__bench_filters(const char *folder, int quick);
 void ethd__bench_velocity(const char *folder, int quick);
 
-/* Returns CLOCK_MONOTONIC's time, ns. */
-int64_t ethd__bench_now(void);
-
 /* Returns the cost of two clock readings in a row, ns: the median of many. */
 double ethd__bench_clock_cost(void);
 
@@ -53,12 +50,6 @@ typedef struct ethd__bench_times {
 
 /* Sorts `ns` in place. */
 ethd__bench_times ethd__bench_percentiles(double *ns, size_t count);
-
-/* ---- random numbers: draw i is the same everywhere ---- */
-
-/* Returns a uniform number in [a, b). */
-double ethd__bench_draw(uint64_t i, double a, double b);
-double ethd__bench_normal(uint64_t i);
 
 /* ---- peers ---- */
 

@@ -5,6 +5,7 @@
 #include "bench/bench.h"
 #include "cli/cli.h"
 #include "ethd/ethd.h"
+#include "unit/draw.h"
 
 #define RING 12e-3 /* m */
 #define FINGER 7.5e-3
@@ -69,15 +70,15 @@ static ethd_vec polar(double r, double angle) { return (ethd_vec){r * cos(angle)
 static void make_trial(uint64_t i, const scenario *what, trial *out) {
   const uint64_t at = 64 * i;
   double m[3][3] = {{0}};
-  int first = (int)ethd__bench_draw(at, 0, ETHD_RAYS);
-  ethd_vec v = polar(what->skew ? SPEED : 0, ethd__bench_draw(at + 1, 0, 2 * M_PI));
-  out->centre = polar(OFFSET * sqrt(ethd__bench_draw(at + 2, 0, 1)), ethd__bench_draw(at + 3, 0, 2 * M_PI));
+  int first = (int)draw(at, 0, ETHD_RAYS);
+  ethd_vec v = polar(what->skew ? SPEED : 0, draw(at + 1, 0, 2 * M_PI));
+  out->centre = polar(OFFSET * sqrt(draw(at + 2, 0, 1)), draw(at + 3, 0, 2 * M_PI));
   for (int k = 0; k < ETHD_RAYS; k++) {
     double r[ETHD_RAYS], t = ((k + 0.5) / ETHD_RAYS - 0.5) * FRAME;
     ethd_vec c = ethd_vec_add(out->centre, ethd_vec_scale(t, v));
     int lost = (k - first + ETHD_RAYS) % ETHD_RAYS < what->lost;
     ethd_fit_rays(RING, FINGER, c, r);
-    out->r[k] = lost ? (double)NAN : r[k] + NOISE * ethd__bench_normal(at + 16 + (uint64_t)k);
+    out->r[k] = lost ? (double)NAN : r[k] + NOISE * draw_normal(at + 16 + (uint64_t)k);
     if (!lost) add_information(m, c, RING - r[k], k);
   }
   if (what->outlier) out->r[first] += i % 2 ? OUTLIER : -OUTLIER;

@@ -6,6 +6,7 @@
 #include "bench/peers.h"
 #include "cli/cli.h"
 #include "ethd/ethd.h"
+#include "unit/draw.h"
 
 enum { PLACES = 1024, NUMBERS = 6 };
 
@@ -23,9 +24,9 @@ typedef struct workload {
 static void make_places(workload *w) {
   for (uint64_t i = 0; i < PLACES; i++) {
     double *in = w->in[i], side = i % 2 ? 1 : -1;
-    in[0] = ethd__bench_draw(8 * i, -M_PI, M_PI);
-    in[1] = side * ethd__bench_draw(8 * i + 1, 0.2, M_PI - 0.2);
-    for (uint64_t k = 2; k < NUMBERS; k++) in[k] = ethd__bench_draw(8 * i + k, -1, 1);
+    in[0] = draw(8 * i, -M_PI, M_PI);
+    in[1] = side * draw(8 * i + 1, 0.2, M_PI - 0.2);
+    for (uint64_t k = 2; k < NUMBERS; k++) in[k] = draw(8 * i + k, -1, 1);
     if (w->arm.mechanism == ETHD_ARM_PARALLEL) in[1] += in[0];
   }
 }

@@ -1,4 +1,5 @@
 #include "bench/scene_race.h"
+#include "clock.h"
 
 #include <math.h>
 
@@ -16,9 +17,9 @@ static int affordable(const ethd__contest *t, double ns) {
 }
 
 static double ask_one(ethd__contest *t, int i, ethd__ask ask, int k) {
-  int64_t start = ethd__bench_now();
+  int64_t start = ethd__clock_now();
   ethd__bench_sink = ethd__contender_nearest(&t->contenders[i], ask, points_of(t, ask)[k]);
-  return fmax(0, (double)(ethd__bench_now() - start) - t->clock);
+  return fmax(0, (double)(ethd__clock_now() - start) - t->clock);
 }
 
 /* ---- hot: the mean without a clock in the loop ---- */
@@ -43,9 +44,9 @@ static void run_block(ethd__contest *t, int i, ethd__ask ask, lap *l, int b) {
   const ethd_vec *x = points_of(t, ask) + BLOCK * b;
   ethd__scene_contender *c = &t->contenders[i];
   double sum = ethd__contender_nearest(c, ask, x[b ? -1 : 0]);
-  int64_t start = ethd__bench_now();
+  int64_t start = ethd__clock_now();
   for (int k = 0; k < l->block; k++) sum += ethd__contender_nearest(c, ask, x[k]);
-  double ns = (double)(ethd__bench_now() - start) - t->clock;
+  double ns = (double)(ethd__clock_now() - start) - t->clock;
   ethd__bench_sink = sum;
   l->best[b] = fmin(l->best[b], ns / l->block);
 }

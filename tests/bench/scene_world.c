@@ -6,6 +6,7 @@
 
 #include "bench/bench.h"
 #include "cli/cli.h"
+#include "unit/draw.h"
 
 const char *const ethd__world_names[ETHD__WORLDS] = {"random", "contour"};
 const char *const ethd__ask_names[ETHD__ASKS] = {"incoherent", "warm", "horizon"};
@@ -14,8 +15,8 @@ const char *const ethd__ask_names[ETHD__ASKS] = {"incoherent", "warm", "horizon"
 
 static void random_segment(size_t i, size_t count, double s[4]) {
   uint64_t k = 8 * (uint64_t)i;
-  double x = ethd__bench_draw(k, -0.5, 0.5), y = ethd__bench_draw(k + 1, -0.5, 0.5);
-  double a = ethd__bench_draw(k + 2, 0, 2 * M_PI), half = ethd__bench_draw(k + 3, 0.1, 0.5) / sqrt((double)count);
+  double x = draw(k, -0.5, 0.5), y = draw(k + 1, -0.5, 0.5);
+  double a = draw(k + 2, 0, 2 * M_PI), half = draw(k + 3, 0.1, 0.5) / sqrt((double)count);
   s[0] = x - half * cos(a), s[1] = y - half * sin(a);
   s[2] = x + half * cos(a), s[3] = y + half * sin(a);
 }
@@ -53,8 +54,7 @@ void ethd__world_path(ethd_vec *points) {
 
 void ethd__world_anywhere(ethd_vec *points) {
   for (uint64_t i = 0; i < ETHD__BENCH_POINTS; i++)
-    points[i] =
-        (ethd_vec){ethd__bench_draw(2 * i + 1000000007, -0.5, 0.5), ethd__bench_draw(2 * i + 1000000008, -0.5, 0.5)};
+    points[i] = (ethd_vec){draw(2 * i + 1000000007, -0.5, 0.5), draw(2 * i + 1000000008, -0.5, 0.5)};
 }
 
 /* ---- contenders ---- */

@@ -6,6 +6,7 @@
 
 #include "bench/bench.h"
 #include "cli/cli.h"
+#include "unit/draw.h"
 
 #define WALL 0.238   /* m */
 #define AHEAD 0.002  /* s by which the ring is behind the finger */
@@ -37,11 +38,11 @@ static void add_reading(const ethd_setup *setup, ethd__tap_finger how, uint64_t 
   if (how == ETHD__TAP_CENTRE) {
     s->have |= ETHD_HAVE_CENTRE;
     put(s->centre, relative);
-    for (uint64_t k = 0; k < 2; k++) s->centre[k] += NOISE * ethd__bench_normal(16 * i + k);
+    for (uint64_t k = 0; k < 2; k++) s->centre[k] += NOISE * draw_normal(16 * i + k);
   } else {
     s->have |= ETHD_HAVE_RAYS;
     ethd_fit_rays(setup->ring_radius, setup->finger_radius, relative, s->rays);
-    for (uint64_t k = 0; k < ETHD_RAYS; k++) s->rays[k] += NOISE * ethd__bench_normal(16 * i + k);
+    for (uint64_t k = 0; k < ETHD_RAYS; k++) s->rays[k] += NOISE * draw_normal(16 * i + k);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
+#include "clock.h"
 
 /* ---- hot ---- */
 
@@ -34,9 +35,9 @@ static void time_ticks(ethd__ticking *t, double *ns, size_t count) {
   double cost = ethd__bench_clock_cost();
   for (size_t i = 0; i < count; i++) {
     const ethd_sense *sense = ethd__ticking_sense(t);
-    int64_t start = ethd__bench_now();
+    int64_t start = ethd__clock_now();
     ethd__ticking_step(t, sense);
-    ns[i] = fmax(0, (double)(ethd__bench_now() - start) - cost);
+    ns[i] = fmax(0, (double)(ethd__clock_now() - start) - cost);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "bench/tick.h"
 #include "cli/cli.h"
+#include "clock.h"
 #include "locked_memory.h"
 
 static void heading(const char *text) { printf("  %s\n", text); }
@@ -42,9 +43,9 @@ void ethd__tick_cold(FILE *csv, int quick) {
     for (size_t i = 0; i < 5 * count; i++) {
       if (i % 5 == 0) evict(buffer);
       const ethd_sense sense = *ethd__ticking_sense(t); /* a device has just written it */
-      int64_t start = ethd__bench_now();
+      int64_t start = ethd__clock_now();
       ethd__ticking_step(t, &sense);
-      if (i % 5 == 0) ns[i / 5] = fmax(0, (double)(ethd__bench_now() - start) - cost);
+      if (i % 5 == 0) ns[i / 5] = fmax(0, (double)(ethd__clock_now() - start) - cost);
     }
     ethd__tick_report(csv, (ethd__tick_row){"cold", "offset", s ? "1000" : "wall", "rays"}, ns, count, NULL);
     ethd__ticking_destroy(t);
@@ -74,7 +75,7 @@ static void sleep_until(int64_t t) {
 static void warm(live_loop *l, const ethd_sense *sense, int64_t tick) {
   ethd_command command;
   for (int i = 0; i < 3; i++) (void)!ethd_control_rehearse(l->tapping->control, sense, &command);
-  while (ethd__bench_now() < tick) continue;
+  while (ethd__clock_now() < tick) continue;
 }
 
 static void *live(void *data) {
@@ -83,14 +84,14 @@ static void *live(void *data) {
   l->fifo = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0;
   ethd__flush_denormals();
   double cost = ethd__bench_clock_cost();
-  int64_t next = ethd__bench_now() + 10 * (int64_t)PERIOD;
+  int64_t next = ethd__clock_now() + 10 * (int64_t)PERIOD;
   for (size_t i = 0; i < l->count; i++, next += PERIOD) {
     const ethd_sense sense = *ethd__ticking_sense(l->tapping);
     sleep_until(l->early ? next - EARLY : next);
     if (l->early) warm(l, &sense, next);
-    int64_t start = ethd__bench_now();
+    int64_t start = ethd__clock_now();
     ethd__ticking_step(l->tapping, &sense);
-    int64_t end = ethd__bench_now();
+    int64_t end = ethd__clock_now();
     l->ns[i] = fmax(0, (double)(end - start) - cost);
     while (next + PERIOD < end) next += PERIOD; /* ticks that were missed stay missed */
   }

@@ -9,6 +9,7 @@
 #include "cli/cli.h"
 #include "ethd/sim.h"
 #include "text/csv.h"
+#include "unit/draw.h"
 
 #define RATE 300.0 /* Hz */
 #define REST 0.05  /* s */
@@ -27,8 +28,8 @@ static void *room_for(size_t count, size_t size) {
 static ethd__track read_path(path_at at, const void *path, double duration, double latency, uint64_t seed) {
   size_t count = (size_t)fmin(ETHD__TRACK_MAX, duration / ETHD__TRACK_PERIOD);
   ethd__track t = {count, room_for(count, sizeof *t.in), room_for(count, sizeof *t.truth)};
-  uint64_t draw = seed << 24;
-  double next = ethd__bench_draw(draw++, 0, 1 / RATE);
+  uint64_t number = seed << 24;
+  double next = draw(number++, 0, 1 / RATE);
   for (size_t k = 0; k < count; k++) {
     double now = (double)(k + 1) * ETHD__TRACK_PERIOD;
     ethd_vec truth = at(path, now);
@@ -37,8 +38,8 @@ static ethd__track read_path(path_at at, const void *path, double duration, doub
     t.in[k][0] = t.in[k][1] = t.in[k][2] = (double)NAN;
     if (next + latency > now) continue;
     ethd_vec x = at(path, next);
-    t.in[k][0] = x.x + ETHD__TRACK_NOISE * ethd__bench_normal(draw++);
-    t.in[k][1] = x.y + ETHD__TRACK_NOISE * ethd__bench_normal(draw++);
+    t.in[k][0] = x.x + ETHD__TRACK_NOISE * draw_normal(number++);
+    t.in[k][1] = x.y + ETHD__TRACK_NOISE * draw_normal(number++);
     t.in[k][2] = now - next;
     next += 1 / RATE;
   }
@@ -61,8 +62,8 @@ static ethd_vec reach_at(const void *path, double t) {
 ethd__tracks ethd__tracks_reaches(size_t count, double latency) {
   ethd__tracks set = {"reaches", room_for(count, sizeof *set.at), count};
   for (uint64_t i = 0; i < count; i++) {
-    double speed = ethd__bench_draw(3 * i, 0.5, 1.1), length = ethd__bench_draw(3 * i + 1, 0.1, 0.3);
-    reach r = {length, 1.875 * length / speed, ethd__bench_draw(3 * i + 2, 0, 2 * M_PI)};
+    double speed = draw(3 * i, 0.5, 1.1), length = draw(3 * i + 1, 0.1, 0.3);
+    reach r = {length, 1.875 * length / speed, draw(3 * i + 2, 0, 2 * M_PI)};
     set.at[i] = read_path(reach_at, &r, r.duration + 2 * REST, latency, i + 1);
   }
   return set;

@@ -6,6 +6,7 @@
 #include "bench/bench.h"
 #include "cli/cli.h"
 #include "ethd/ethd.h"
+#include "unit/draw.h"
 
 #define T 1e-3      /* s */
 #define LINK 0.25   /* m */
@@ -98,7 +99,7 @@ static double steady(const contender *c, int runs) {
   double sum = 0;
   for (int run = 0; run < runs; run++) {
     ethd_velocity_state s;
-    double phase = ethd__bench_draw((uint64_t)run, 0, 1);
+    double phase = draw((uint64_t)run, 0, 1);
     memset(&s, 0, sizeof s);
     for (int k = 0; k < LONG; k++) {
       double v = LINK * ethd_velocity_step(&c->v, &s, encoder(STEADY * T * k, phase), 0, T);
@@ -114,7 +115,7 @@ static void brake(const contender *c, int runs, figure *out) {
   double sum = 0, ticks = 0, delays = 0, squares = 0, early = 0;
   for (int run = 0; run < runs; run++) {
     ethd_velocity_state s;
-    double phase = ethd__bench_draw(2 * (uint64_t)run, 0, 1), within = ethd__bench_draw(2 * (uint64_t)run + 1, 0, 1);
+    double phase = draw(2 * (uint64_t)run, 0, 1), within = draw(2 * (uint64_t)run + 1, 0, 1);
     double declared = NAN;
     memset(&s, 0, sizeof s);
     for (int k = 0; k < TICKS; k++) {
