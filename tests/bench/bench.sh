@@ -14,6 +14,6 @@ echo "pictures, each beside its CSV:"
 for csv in "$out"/*.csv; do
   what=$(basename "$csv" .csv)
   [ -f "$here/$what.gp" ] || continue
-  (cd "$out" && gnuplot -e "in='$what.csv'; out='$what.png'" "$here/$what.gp")
+  (cd "$out" && gnuplot -e "in='$what.csv'; out='$what.png'" "$here/../picture.gp" "$here/$what.gp")
   echo "  $out/$what.png"
 done

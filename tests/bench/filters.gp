@@ -1,20 +1,9 @@
 # Finger filters: run time against the error of the extrapolated position.
-#   gnuplot -e "in='filters.csv'; out='filters.png'" filters.gp
-# in: the file of make bench.
-if (!exists("in") || !exists("out")) { print "filters.gp: set in and out: gnuplot -e \"in='filters.csv'; out='filters.png'\" filters.gp"; exit status 2 }
-
-set terminal pngcairo size 1250,800 font "Sans,15" background "#ffffff"
+set terminal pngcairo size 1250,800 font "Sans,15"
 set output out
-set datafile separator comma
-set datafile columnheaders
 
 any = 0
 stats in using (any = any + (strcol("set") eq "all recorded"), 0) nooutput
-grey = "#7a7a7a"
-set border 3 lc rgb grey
-set tics nomirror textcolor rgb "#333333" scale 0.6
-set grid lc rgb "#e4e4e4" lt 1 lw 1
-unset key
 set logscale xy
 set xrange [0.4:300]
 set yrange [0.06:4]

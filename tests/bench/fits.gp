@@ -1,18 +1,7 @@
 # Ring fits: time against the centre's error, beside the Cramer-Rao bound.
-#   gnuplot -e "in='fits.csv'; out='fits.png'" fits.gp
-# in: the file of make bench.
-if (!exists("in") || !exists("out")) { print "fits.gp: set in and out: gnuplot -e \"in='fits.csv'; out='fits.png'\" fits.gp"; exit status 2 }
-
-set terminal pngcairo size 1200,1000 font "Sans,15" background "#ffffff"
+set terminal pngcairo size 1200,1000 font "Sans,15"
 set output out
-set datafile separator comma
-set datafile columnheaders
 
-grey = "#7a7a7a"
-set border 3 lc rgb grey
-set tics nomirror textcolor rgb "#333333" scale 0.6
-set grid lc rgb "#e4e4e4" lt 1 lw 1
-unset key
 set xrange [0:250]
 set logscale y
 set yrange [0.05:8]

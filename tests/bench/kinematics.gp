@@ -1,18 +1,7 @@
 # Kinematics of the planar arm: time against error.
-#   gnuplot -e "in='kinematics.csv'; out='kinematics.png'" kinematics.gp
-# in: the file of make bench.
-if (!exists("in") || !exists("out")) { print "kinematics.gp: set in and out: gnuplot -e \"in='kinematics.csv'; out='kinematics.png'\" kinematics.gp"; exit status 2 }
-
-set terminal pngcairo size 1100,700 font "Sans,15" background "#ffffff"
+set terminal pngcairo size 1100,700 font "Sans,15"
 set output out
-set datafile separator comma
-set datafile columnheaders
 
-grey = "#7a7a7a"
-set border 3 lc rgb grey
-set tics nomirror textcolor rgb "#333333" scale 0.6
-set grid lc rgb "#e4e4e4" lt 1 lw 1
-unset key
 set tmargin at screen 0.86
 set label 1 "Kinematics of a planar arm: forward kinematics, Jacobian, J^Tf and J^{-1}e" at screen 0.075,0.955 font "Sans Bold,18"
 set label 2 "at 1024 places of the workspace away from singularities, links 0.25 m; reference: long double" \

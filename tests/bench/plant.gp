@@ -1,21 +1,12 @@
 # The plant's integration: run time against error.
-#   gnuplot -e "in='plant.csv'; out='plant.png'" plant.gp
-# in: the file of make bench.
-if (!exists("in") || !exists("out")) { print "plant.gp: set in and out: gnuplot -e \"in='plant.csv'; out='plant.png'\" plant.gp"; exit status 2 }
-
-set terminal pngcairo size 1200,800 font "Sans,14" background "#ffffff"
+set terminal pngcairo size 1200,800 font "Sans,14"
 set output out
-set datafile separator comma
 # The names in order of appearance; NaN drops the rows of the others.
 array names[99]
 count = 0
 known(name) = count == 0 ? 0 : sum [k = 1:count] (names[k] eq name)
 stats in using (known(strcol(1)) || strcol(1) eq "method" ? 0 : (count = count + 1, names[count] = strcol(1)), 0) nooutput
 
-grey = "#7a7a7a"
-set border 3 lc rgb grey
-set tics nomirror textcolor rgb "#333333" scale 0.6
-set grid lc rgb "#e4e4e4" lt 1 lw 1
 set tmargin at screen 0.87
 set label 1 "Moving the plant alone: run time against error" at screen 0.075,0.962 font "Sans Bold,18"
 set label 2 "plant n, simulated, plausible and not measured; torques recorded in closed loop; against GSL's rk8pd with events at 10^{-14}" \

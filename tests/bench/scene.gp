@@ -1,19 +1,8 @@
 # Scene queries: time over the number of segments, beside other libraries.
-#   gnuplot -e "in='scene.csv'; out='scene.png'" scene.gp
-# in: the file of make bench.
-if (!exists("in") || !exists("out")) { print "scene.gp: set in and out: gnuplot -e \"in='scene.csv'; out='scene.png'\" scene.gp"; exit status 2 }
-
-set terminal pngcairo size 1500,1000 font "Sans,15" background "#ffffff"
+set terminal pngcairo size 1500,1000 font "Sans,15"
 set output out
-set datafile separator comma
-set datafile columnheaders
 set datafile missing NaN
 
-grey = "#7a7a7a"
-set border 3 lc rgb grey
-set tics nomirror textcolor rgb "#333333" scale 0.6
-set grid lc rgb "#e4e4e4" lt 1 lw 1
-unset key
 set logscale xy
 set xrange [0.8:150000]
 set yrange [8:2e6]

@@ -1,18 +1,6 @@
 # The whole tick: how many take longer than a time, and where the time goes.
-#   gnuplot -e "in='tick.csv'; out='tick.png'" tick.gp
-# in: the file of make bench.
-if (!exists("in") || !exists("out")) { print "tick.gp: set in and out: gnuplot -e \"in='tick.csv'; out='tick.png'\" tick.gp"; exit status 2 }
-
-set terminal pngcairo size 1350,760 font "Sans,15" background "#ffffff"
+set terminal pngcairo size 1350,760 font "Sans,15"
 set output out
-set datafile separator comma
-set datafile columnheaders
-
-grey = "#7a7a7a"
-set border 3 lc rgb grey
-set tics nomirror textcolor rgb "#333333" scale 0.6
-set grid lc rgb "#e4e4e4" lt 1 lw 1
-unset key
 
 here(what, scene, finger) = strcol("what") eq what && strcol("law") eq "offset" && strcol("scene") eq scene && strcol("finger") eq finger
 tail(what, scene, finger) = here(what, scene, finger) && strcol("name") eq "tail" ? column("time_ns") : NaN

@@ -1,18 +1,7 @@
 # Velocity estimators: run time against error, lag against noise, and when the ring is said to stand still.
-#   gnuplot -e "in='velocity.csv'; out='velocity.png'" velocity.gp
-# in: the file of make bench.
-if (!exists("in") || !exists("out")) { print "velocity.gp: set in and out: gnuplot -e \"in='velocity.csv'; out='velocity.png'\" velocity.gp"; exit status 2 }
-
-set terminal pngcairo size 1500,720 font "Sans,15" background "#ffffff"
+set terminal pngcairo size 1500,720 font "Sans,15"
 set output out
-set datafile separator comma
-set datafile columnheaders
 
-grey = "#7a7a7a"
-set border 3 lc rgb grey
-set tics nomirror textcolor rgb "#333333" scale 0.6
-set grid lc rgb "#e4e4e4" lt 1 lw 1
-unset key
 families = "difference lowpass lsq foaw kalman 'kalman with torque'"
 colors = "0x7a7a7a 0xd98a00 0x2e7d4f 0x1f5fa8 0x8e44ad 0xc0392b"
 tint(i) = int(word(colors, i))

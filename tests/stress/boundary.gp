@@ -1,20 +1,10 @@
 # The sampled loop's boundary of stability: found by simulation (points), closed form (lines), in units of the
 # mass and the period.
-#   gnuplot -e "in='boundary.csv'; out='boundary.png'" boundary.gp
-# in: a file of stress boundary --out
-if (!exists("in") || !exists("out")) { print "boundary.gp: set in and out"; exit status 2 }
-
-set terminal pngcairo size 1200,960 font "Sans,14" background "#ffffff"
+set terminal pngcairo size 1200,960 font "Sans,14"
 set output out
-set datafile separator comma
-set datafile columnheaders
 
-grey = "#7a7a7a"
 array tone[3] = ["#1f5fa8", "#c0652b", "#2e7d4f"]
 array velocity[4] = ["difference", "lowpass 130 Hz", "lowpass 400 Hz", "lsq of 4"]
-set border 3 lc rgb grey
-set tics nomirror textcolor rgb "#333333" scale 0.6
-set grid lc rgb "#e4e4e4" lt 1 lw 1
 set logscale xy
 set format x "10^{%L}"
 set format y "10^{%L}"

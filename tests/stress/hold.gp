@@ -1,12 +1,8 @@
 # Which rates and told masses hold a ring before the wall, by the observer's memory and the device's delay.
-#   gnuplot -e "in='hold.csv'; out='hold.png'" hold.gp
-# in: a file of stress hold --out.
-if (!exists("in") || !exists("out")) { print "hold.gp: set in and out"; exit status 2 }
-set terminal pngcairo size 1300,1150 font "Sans,13" background "#ffffff"
+set terminal pngcairo size 1300,1150 font "Sans,13"
 set output out
-set datafile separator comma
-set datafile columnheaders
-set border 15 lc rgb "#7a7a7a"
+unset grid
+set border 15 lc rgb grey
 set tics nomirror scale 0.6 front
 set xrange [0.025:0.525]
 set yrange [0.45:2.05]
@@ -17,7 +13,6 @@ set cbrange [0:2]
 set cbtics ("1" 0, "10" 1, "100" 2)
 set cblabel "a swing falls to 1/e within, ms"
 set object 1 rectangle from graph 0,0 to graph 1,1 fc rgb "#f4dcd3" fs solid noborder behind
-unset key
 here(n, b) = column("delay_ticks") == n && abs(column("memory") - b) < 1e-9
 within(x, a, b) = x < a ? a : x > b ? b : x
 fade(g) = g < -0.025 ? within(log10(-1/g), 0, 2) : NaN

@@ -1,15 +1,10 @@
-# Which K_e and B_e are stable, by delay and mass: cells are simulated, the line is the closed form.
-#   gnuplot -e "map='map.csv'; curve='map_curve.csv'; out='map.png'" map.gp
-# map, curve: files of stress map --out. velocity (difference) may be lowpass.
-if (!exists("map") || !exists("curve") || !exists("out")) { print "map.gp: set map, curve and out"; exit status 2 }
+# Which K_e and B_e are stable, by delay and mass: cells are simulated, the line, of the file `curve`, is the closed form.
+if (!exists("curve")) { print "map.gp: set curve, too"; exit status 2 }
 if (!exists("velocity")) velocity = "difference"
-
-set terminal pngcairo size 1400,960 font "Sans,14" background "#ffffff"
+set terminal pngcairo size 1400,960 font "Sans,14"
 set output out
-set datafile separator comma
-set datafile columnheaders
 
-grey = "#7a7a7a"
+unset grid
 set border 15 lc rgb grey
 set tics nomirror textcolor rgb "#333333" scale 0.6 front
 set xrange [2:6]
@@ -21,14 +16,13 @@ set cbrange [0:3]
 set cbtics ("1" 0, "10" 1, "100" 2, "1000" 3)
 set cblabel "a swing falls to 1/e within, ms"
 set object 1 rectangle from graph 0,0 to graph 1,1 fc rgb "#f4dcd3" fs solid noborder behind
-unset key
 
 here(n, m) = strcol("velocity") eq velocity && column("delay_ticks") == n && abs(column("mass_kg") - m) < 1e-9
 lg(x) = log10(x)
 within(x, a, b) = x < a ? a : x > b ? b : x
 fade(g) = g < 0 ? within(lg(-1 / g), 0, 3) : NaN
 # The file holds a grid of cells for each panel, one after the other.
-stats map using (here(0, 0.1) ? 1 : NaN) nooutput name "CELL"
+stats in using (here(0, 0.1) ? 1 : NaN) nooutput name "CELL"
 cells = int(CELL_records)
 panel(row, delay) = ((velocity eq "lowpass" ? 6 : 0) + 3 * row + delay) * cells
 
@@ -49,7 +43,7 @@ do for [row = 0:1] {
     if (delay) {set ylabel ""} else {set ylabel "B_e, Ns/m"}
     if (delay == 2) {set colorbox user origin 0.915,0.115 size 0.018,0.765} else {unset colorbox}
     from = panel(row, delay); to = from + cells - 1
-    plot map every ::from::to using (lg(column("k_npm"))):(lg(column("b_nspm"))):(fade(column("growth_per_tick"))) \
+    plot in every ::from::to using (lg(column("k_npm"))):(lg(column("b_nspm"))):(fade(column("growth_per_tick"))) \
            with image pixels, \
          curve using (here(delay, m) ? lg(column("k_npm")) : NaN):(lg(column("b_nspm"))) with lines lc rgb "#8c1d18" lw 2.2, \
          "+" using (lg(2500)):(lg(45)) every ::0::0 with points pt 2 ps 1.6 lw 2.4 lc rgb "#1c1c1c"

@@ -9,12 +9,12 @@ mkdir -p "$out"
 code=0
 "$BUILD/tests/stress" all $EFFORT --out "$out" --csv "$out/results.csv" || code=$?
 
-plot() { (cd "$out" && gnuplot -e "$1" "$here/$2"); }
+plot() { (cd "$out" && gnuplot -e "$1" "$here/../picture.gp" "$here/$2"); }
 draw() {
   plot "in='boundary.csv'; out='boundary.png'" boundary.gp
   plot "in='hold.csv'; out='hold.png'" hold.gp
   for velocity in difference lowpass; do
-    plot "map='map.csv'; curve='map_curve.csv'; velocity='$velocity'; out='map-$velocity.png'" map.gp
+    plot "in='map.csv'; curve='map_curve.csv'; velocity='$velocity'; out='map-$velocity.png'" map.gp
   done
   echo
   echo "results: $out/results.csv; pictures, drawn from the CSV beside them:"
