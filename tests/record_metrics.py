@@ -32,13 +32,13 @@ def first(flags, start=0):
 
 
 def rebound(depth):
-    """First maximum minus the next minimum; an extremum counts once 20 um are turned back."""
-    below = first(depth < np.maximum.accumulate(depth) - 20e-6)
+    """First maximum minus the next minimum; an extremum counts once 0.1 mm is turned back."""
+    below = first(depth < np.maximum.accumulate(depth) - 1e-4)
     if below is None:
         return 0.0
     peak = depth[: below + 1].max()
     rest = depth[below:]
-    above = first(rest > np.minimum.accumulate(rest) + 20e-6)
+    above = first(rest > np.minimum.accumulate(rest) + 1e-4)
     return peak - rest[: above if above is None else above + 1].min()
 
 
@@ -51,21 +51,24 @@ def begin_of(k, t):
 
 
 def measure(k, t, speed, never_fast):
-    v, depth = -t[SIDE][:, 0], -t["ring"][:, 0]
-    out = dict.fromkeys(("v_rvo_mps", "v_of_mps", "d_max_m", "v_rmin_mps", "delta_s_ms", "eps_m", "t_rvo_s", "t_of_s"))
+    v, depth, ring = -t[SIDE][:, 0], -t[SIDE[:-2]][:, 0], -t["ring"][:, 0]
+    out = dict.fromkeys(("v_rvo_mps", "v_of_mps", "d_max_m", "v_rmin_mps", "delta_s_ms", "eps_m", "t_rvo_s", "t_of_s", "v_of_tick_mps", "d_max_ring_m"))
     out["peak_force_n"] = np.sqrt((k["fe"] ** 2).sum(axis=1)).max()
     begin = begin_of(k, t)
     met = None if begin is None else first(k["d_re"] < 0, begin)
     touch = None
     if met is not None:
         out["t_rvo_s"], out["v_rvo_mps"], out["d_max_m"] = t["t"][met], v[met], rebound(depth[met:])
+        out["d_max_ring_m"] = rebound(ring[met:])
         braking = first(k["state"] == 1, met)
         vo = None if braking is None else first(k["state"] == 2, braking)
         if vo is not None:
             out["delta_s_ms"], out["eps_m"] = (vo - braking) * 1e3 * PERIOD, k["eps"][vo]
         touch = first(t["pad"] > 0, met)
     if touch is not None:
-        out["t_of_s"], out["v_of_mps"], out["v_rmin_mps"] = t["t"][touch], v[touch], v[touch : touch + 101].min()
+        out["t_of_s"], out["v_of_tick_mps"], out["v_rmin_mps"] = t["t"][touch], v[touch], v[touch + 1 : touch + 101].min()
+        around = slice(touch - 1, touch + 1)
+        out["v_of_mps"] = np.interp(0, t["pad"][around], v[around]) if t["pad"][touch - 1] <= 0 else v[touch]
     out["reason"] = reason(k, t, begin, met, touch, v, speed, never_fast)
     out["valid"] = "1" if out["reason"] == "ok" else "0"
     # the tap ends 0.15 s after t_r/vo

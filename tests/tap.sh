@@ -13,7 +13,7 @@ fail() { echo "$*"; exit 1; }
 cmp "$folder/a.csv" "$folder/b.csv"
 cmp "$folder/a.txt" "$folder/b.txt"
 cmp -s "$folder/a.csv" "$folder/c.csv" && fail "seed 2 gives what seed 1 gives"
-header=tap,transition,speed,seed,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m,t_rvo_s,t_of_s,peak_force_n,v_hand_mps,touch_depth_m,eps_felt_m
+header=tap,transition,speed,seed,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m,t_rvo_s,t_of_s,peak_force_n,v_hand_mps,touch_depth_m,eps_felt_m,v_of_tick_mps,d_max_ring_m
 [ "$(head -n 1 "$folder/a.csv")" = "$header" ] || fail "the header is $(head -n 1 "$folder/a.csv")"
 [ "$(wc -l <"$folder/a.csv")" = 49 ] || fail "not 6 taps in 8 cells"
 
@@ -168,7 +168,7 @@ code=0
 wait $pid || code=$?
 [ $code = 1 ] || fail "after a signal: exit $code, not 1"
 grep -q 'what was done is kept' "$folder/err" || fail "it doesn't say that it was stopped"
-[ "$(tail -n +2 "$folder/cut.csv" | awk -F, 'NF != 18' | wc -l)" = 0 ] || fail "a cut row"
+[ "$(tail -n +2 "$folder/cut.csv" | awk -F, 'NF != 20' | wc -l)" = 0 ] || fail "a cut row"
 [ "$(wc -l <"$folder/cut.csv")" -gt 1 ] || fail "nothing was kept"
 "$BUILD/bin/ethd-replay" --verify "$folder/cut" >/dev/null
 exit 0

@@ -24,7 +24,7 @@ cells = [cell(law, speed, [r for r in rows if (r["transition"], r["speed"]) == (
          for speed in ("low", "high") for law in ("abrupt", "smooth", "offset", "predictive")]
 taps = Taps(cells, [str(k) for k in range(1 + max(int(r["tap"]) for r in rows))])
 margins = paper.Margins(0.3, 0.02, 0.02)
-means = {m.name: m.verdict for m in paper.means(taps)}
+means = {m.name: m for m in paper.means(taps)}
 found = paper.claims(taps, margins, 1)
 wanted = {"the finger touches before the ring meets the wall": paper.CONTRARY}
 if sys.argv[2] == "n":
@@ -37,11 +37,12 @@ if sys.argv[2] == "n":
         "high speed: the ring's speed at the touch is nearer to zero": paper.SHOWN,
         "high speed: in at least 25 % of the taps": paper.SHOWN,
         "the ring is stopped in practice in less than 20 ms": paper.SHOWN,
-        "the offset of the wall remains below 3 mm": paper.SHOWN,
+        "the offset of the wall remains below 3 mm": paper.CONTRARY, # a quarter of the fast taps are deeper
         "high speed: 20 to 30 % of the taps are valid": paper.SHOWN,
         "the finger touches before the ring meets the wall": paper.SHOWN,
     }
-    assert means["Delta_s, low"] == means["eps, low"] == paper.SHOWN, means
+    for m in means["Delta_s, low"], means["eps, low"]:
+        assert abs(m.average - m.paper) < m.paper_sd, m
     d_max, v_of, _ = found[0].parts
     assert d_max.p < 1e-4 < 0.9999 < v_of.p, f"at low speed d_max alone is alike, v_of isn't: p {d_max.p}, {v_of.p}"
     for part in (found[5].parts[0], found[5].parts[2]):

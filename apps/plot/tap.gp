@@ -32,14 +32,14 @@ t(x) = 1e3*column("since_wall_s")
 # t_of/r: the first tick at or after t_r/vo with the pad pressing
 touch = NaN
 stats in using (column("since_wall_s") >= -1e-9 && column("pad_force_N") > 0 && touch != touch ? (touch = 1e3*column("since_wall_s")) : 0) nooutput
-# d_max: from the ring's first peak in the wall to the valley after it, each once the ring has turned by 0.02 mm;
+# d_max: from the ring's first peak in the wall to the valley after it, each once the ring has turned by 0.1 mm;
 # v_rmin: the ring's smallest speed in the 0.1 s after the touch. As apps/tap/metrics.c has them.
 peak = NaN; valley = NaN; t_peak = NaN; t_valley = NaN; turned = 0; v_rmin = NaN; t_rmin = NaN
 follow(x, at) = at < -1e-9 || turned == 2 ? 0 : turned == 0 ? \
-  (peak != peak || x > peak ? (peak = x, t_peak = at) : x < peak - 0.02 ? (turned = 1, valley = x, t_valley = at) : 0) : \
-  x < valley ? (valley = x, t_valley = at) : x > valley + 0.02 ? (turned = 2) : 0
+  (peak != peak || x > peak ? (peak = x, t_peak = at) : x < peak - 0.1 ? (turned = 1, valley = x, t_valley = at) : 0) : \
+  x < valley ? (valley = x, t_valley = at) : x > valley + 0.1 ? (turned = 2) : 0
 stats in using (follow(1e3*column("ring_m"), t(0)), 0) nooutput
-stats in using (touch == touch && t(0) >= touch - 1e-9 && t(0) <= touch + 100 + 1e-9 && (v_rmin != v_rmin || column("v_ring_mps") < v_rmin) ? (v_rmin = column("v_ring_mps"), t_rmin = t(0)) : 0, 0) nooutput
+stats in using (touch == touch && t(0) > touch + 1e-9 && t(0) <= touch + 100 + 1e-9 && (v_rmin != v_rmin || column("v_ring_mps") < v_rmin) ? (v_rmin = column("v_ring_mps"), t_rmin = t(0)) : 0, 0) nooutput
 stats [*:*] in using (t(0) >= from && t(0) <= to ? 1e3*column("ring_m") : NaN) nooutput name "R"
 moved_any = 0
 stats in using (moved_any = moved_any + (strlen(strcol("offset_wall_m")) > 0), 0) nooutput

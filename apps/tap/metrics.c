@@ -53,11 +53,11 @@ static size_t touch_from(const ethd__tap_rows *rows, size_t i) {
 }
 
 /* Each extremum counts once the ring has turned back by the hysteresis. */
-static double rebound(const ethd__tap_rows *rows, const ethd__rule *rule, size_t from) {
-  double peak = along(rule->n, rows->truth[from].ring), valley = peak;
+static double rebound(const ethd__tap_rows *rows, ethd_vec n, int32_t side, size_t from) {
+  double peak = -INFINITY, valley = NAN;
   bool turned = false;
   for (size_t i = from; i < rows->count; i++) {
-    double s = along(rule->n, rows->truth[i].ring);
+    double s = along(n, side ? rows->truth[i].motor : rows->truth[i].ring);
     if (!turned && s > peak) peak = s;
     if (!turned && s < peak - ETHD_TAP_HYSTERESIS) turned = true, valley = s;
     if (turned && s < valley) valley = s;
@@ -66,11 +66,18 @@ static double rebound(const ethd__tap_rows *rows, const ethd__rule *rule, size_t
   return turned ? peak - valley : 0;
 }
 
+static double touch_speed(const ethd__tap_rows *rows, const ethd__rule *rule, size_t touch) {
+  double after = speed_at(rows, rule, touch);
+  if (touch == 0 || !(rows->truth[touch - 1].pad <= 0)) return after;
+  double off = -rows->truth[touch - 1].pad, before = speed_at(rows, rule, touch - 1);
+  return before + off / (off + rows->truth[touch].pad) * (after - before);
+}
+
 static double slowest(const ethd__tap_rows *rows, const ethd__rule *rule, size_t from) {
   double least = INFINITY;
   size_t end = from + (size_t)floor(ETHD_TAP_REBOUND / rule->period + 0.5);
-  for (size_t i = from; i < rows->count && i <= end; i++) least = fmin(least, speed_at(rows, rule, i));
-  return least;
+  for (size_t i = from + 1; i < rows->count && i <= end; i++) least = fmin(least, speed_at(rows, rule, i));
+  return isinf(least) ? (double)NAN : least;
 }
 
 /* Periods from row to row, those that a live loop missed among them. */
@@ -156,13 +163,15 @@ static void measure_meeting(const ethd__tap_rows *rows, const ethd__rule *rule, 
   if (meeting == rows->count) return;
   out->v_rvo = speed_at(rows, rule, meeting);
   out->t_rvo = rows->truth[meeting].t;
-  out->d_max = rebound(rows, rule, meeting);
+  out->d_max = rebound(rows, rule->n, rule->side, meeting);
+  out->d_max_ring = rebound(rows, rule->n, 0, meeting);
   braking(rows, rule, meeting, out);
 }
 
 static void measure_touch(const ethd__tap_rows *rows, const ethd__rule *rule, size_t touch, ethd__metrics *out) {
   if (touch == rows->count) return;
-  out->v_of = speed_at(rows, rule, touch);
+  out->v_of = touch_speed(rows, rule, touch);
+  out->v_of_tick = speed_at(rows, rule, touch);
   out->t_of = rows->truth[touch].t;
   out->v_rmin = slowest(rows, rule, touch);
 }
@@ -174,7 +183,9 @@ void ethd__metrics_of(const ethd__tap_rows *rows, const ethd__rule *rule, ethd__
   const ethd__felt felt = ethd__felt_of(rows, rule, begin, first);
   *out = (ethd__metrics){.v_rvo = NAN,
                          .v_of = NAN,
+                         .v_of_tick = NAN,
                          .d_max = NAN,
+                         .d_max_ring = NAN,
                          .v_rmin = NAN,
                          .delta_s = NAN,
                          .eps = NAN,

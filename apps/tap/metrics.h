@@ -6,7 +6,8 @@
             |                  .-'         '._.-----     valley
             +--------------------------------------> t   t_of/r: first tick with the pad touching
 
-   t_r/vo is the first tick with the controller's d_re < 0. A recorded movement may start with the ring in
+   The touch itself lies before t_of/r; v_of is the line's between the speeds at the ticks around it, at which the pad's
+   depth, also on a line, is 0. t_r/vo is the first tick with the controller's d_re < 0. A recorded movement may start with the ring in
    the wall: the tap then begins once the ring is clear of it again, and would be if it were centred on the
    hand, both by more than d_beta. */
 #ifndef ETHD__APPS_TAP_METRICS_H
@@ -16,8 +17,8 @@
 
 #include "ethd/sim.h"
 
-#define ETHD_TAP_REBOUND 0.1      /* s after the touch in which v_rmin is looked for */
-#define ETHD_TAP_HYSTERESIS 20e-6 /* m by which the ring must turn back to make an extremum */
+#define ETHD_TAP_REBOUND 0.1       /* s after the touch in which v_rmin is looked for */
+#define ETHD_TAP_HYSTERESIS 0.1e-3 /* m by which the ring must turn back to make an extremum: a hum makes none */
 
 /* Ticks of one tap, oldest first; truth[i] belongs to trace[i]. */
 typedef struct ethd__tap_rows {
@@ -36,7 +37,7 @@ typedef enum ethd__validity { ETHD_TAP_BY_PAPER, ETHD_TAP_BY_FINGER } ethd__vali
 typedef struct ethd__rule {
   ethd_vec n;         /* of the wall, into it */
   double period;      /* s */
-  int32_t side;       /* whose speed counts: 0 the ring's, 1 the motor side's */
+  int32_t side;       /* what is measured, speed and rebound: 0 the ring, 1 its motor side */
   double speed, band; /* m/s: valid if the ring meets the wall at speed +- band */
   double meet;        /* m: the ring's centre along n as it meets the wall */
   double d_beta;      /* m */
@@ -83,8 +84,10 @@ typedef struct ethd__metrics {
   ethd__reason reason;             /* by the rule's validity: one of these two */
   ethd__reason by_ring, by_finger; /* by the paper's, by the finger's */
   double v_rvo, v_of;              /* m/s: the ring's as it meets the wall, as the finger touches it */
-  double d_max;                    /* m: first rebound; 0 when the ring never turns back */
-  double v_rmin;                   /* m/s: smallest after the touch */
+  double v_of_tick;                /* m/s: the ring's at t_of */
+  double d_max;                    /* m: first rebound of the measured side; 0 when it never turns back */
+  double d_max_ring;               /* m: likewise of the ring, whatever is measured */
+  double v_rmin;                   /* m/s: smallest after t_of */
   double delta_s;                  /* ms: first braking tick to first vo tick after it */
   double eps;                      /* m: offset at that vo tick */
   double t_rvo, t_of;              /* s of the tap */

@@ -54,8 +54,9 @@ static void write_row(ethd_csv_out *csv, const ethd__stage *stage, const char *l
   ethd_csv_word(csv, seed);
   ethd_csv_integer(csv, m->reason == ETHD_TAP_OK);
   ethd_csv_word(csv, ethd__reason_words[m->reason]);
-  const double figures[] = {m->v_rvo, m->v_of, m->d_max,      m->v_rmin, m->delta_s,     m->eps,
-                            m->t_rvo, m->t_of, m->peak_force, m->v_hand, m->touch_depth, m->eps_felt};
+  const double figures[] = {m->v_rvo,       m->v_of,     m->d_max,     m->v_rmin,     m->delta_s,
+                            m->eps,         m->t_rvo,    m->t_of,      m->peak_force, m->v_hand,
+                            m->touch_depth, m->eps_felt, m->v_of_tick, m->d_max_ring};
   for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) ethd_csv_number(csv, figures[i]);
   ethd_csv_row(csv);
 }

@@ -9,7 +9,7 @@
 /* The CSV has a row per tap: `speed` as given, `valid` 1 or 0; a figure that isn't defined is empty. */
 #define ETHD_TAP_HEADER                                                                            \
   "tap,transition,speed,seed,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m," \
-  "t_rvo_s,t_of_s,peak_force_n,v_hand_mps,touch_depth_m,eps_felt_m"
+  "t_rvo_s,t_of_s,peak_force_n,v_hand_mps,touch_depth_m,eps_felt_m,v_of_tick_mps,d_max_ring_m"
 
 /* The folder of the ticks holds taps.csv (ETHD_TAP_HEADER) too. */
 typedef struct ethd__output {

@@ -51,16 +51,30 @@ START_TEST(test_meeting_and_touch) {
   ck_assert_double_eq(m.t_rvo, 50 * 1e-3);
   ck_assert_double_eq(m.t_of, 70 * 1e-3);
   ck_assert_double_eq(m.v_rvo, 0.2);
-  ck_assert_double_eq(m.v_of, -0.03);
+  ck_assert_double_eq_tol(m.v_of, -0.03 * 10 / 11, 1e-15); /* the pad was 1 mm off, and is 0.1 mm in */
+  ck_assert_double_eq(m.v_of_tick, -0.03);
   ck_assert_double_eq(m.v_rmin, -0.11);
   ck_assert(isnan(m.delta_s) && isnan(m.eps));
 }
 END_TEST
 
-/* v_rmin is looked for from the touch to 0.1 s after it, both ends included. */
+/* The pad comes to the ring a quarter of the way from tick 69 to 70. */
+START_TEST(test_touch_between_ticks) {
+  touch_at(70);
+  truth[69].pad = -1e-4, truth[70].pad = 3e-4;
+  truth[69].ring_v[0] = -0.08, truth[70].ring_v[0] = 0.04;
+  ethd__metrics m = measure();
+  ck_assert_double_eq_tol(m.v_of, 0.05, 1e-15);
+  ck_assert_double_eq(m.v_of_tick, -0.04);
+  truth[69].pad = NAN; /* nothing is known of the tick before */
+  ck_assert_double_eq(measure().v_of, -0.04);
+}
+END_TEST
+
+/* v_rmin is looked for after the touch, up to 0.1 s after it. */
 START_TEST(test_window_of_the_smallest_speed) {
   touch_at(70);
-  truth[69].ring_v[0] = 0.9;
+  truth[70].ring_v[0] = 0.9;
   truth[171].ring_v[0] = 0.8;
   truth[170].ring_v[0] = 0.5;
   ck_assert_double_eq(measure().v_rmin, -0.5);
@@ -69,19 +83,28 @@ START_TEST(test_window_of_the_smallest_speed) {
 }
 END_TEST
 
-/* Up to 1 mm deep, 15 um of ripple, back by 0.4 mm, forth by 30 um, further back. */
+/* Up to 1 mm deep, 0.08 mm of ripple, back by 0.4 mm, forth by 0.12 mm, further back; the motor twice as far. */
 START_TEST(test_first_rebound) {
-  const double depth[] = {0.2, 0.6, 0.585, 1.0, 0.99, 0.8, 0.6, 0.615, 0.6, 0.63, 0.1, 0.1};
+  const double depth[] = {0.2, 0.6, 0.52, 1.0, 0.99, 0.8, 0.6, 0.68, 0.6, 0.72, 0.1, 0.1};
   enum { N = sizeof depth / sizeof *depth };
-  for (int i = 50; i < COUNT; i++) truth[i].ring[0] = 0.25 - 1e-3 * depth[i - 50 < N ? i - 50 : N - 1];
+  for (int i = 50; i < COUNT; i++) {
+    truth[i].ring[0] = 0.25 - 1e-3 * depth[i - 50 < N ? i - 50 : N - 1];
+    truth[i].motor[0] = 0.25 - 2e-3 * depth[i - 50 < N ? i - 50 : N - 1];
+  }
   ck_assert_double_eq_tol(measure().d_max, 0.4e-3, 1e-12);
+  ck_assert_double_eq(measure().d_max, measure().d_max_ring);
+  rule.side = 1; /* forth by 0.16 mm is a rebound's end already */
+  ck_assert_double_eq_tol(measure().d_max, 0.16e-3, 1e-12);
+  ck_assert_double_eq_tol(measure().d_max_ring, 0.4e-3, 1e-12);
 }
 END_TEST
 
 START_TEST(test_no_rebound) {
   ck_assert_double_eq(measure().d_max, 0);
-  truth[COUNT - 1].ring[0] += 25e-6; /* turned back, and the tap ends there */
-  ck_assert_double_eq_tol(measure().d_max, 25e-6, 1e-12);
+  truth[COUNT - 1].ring[0] += 99e-6;
+  ck_assert_double_eq(measure().d_max, 0);
+  truth[COUNT - 1].ring[0] += 6e-6; /* turned back, and the tap ends there */
+  ck_assert_double_eq_tol(measure().d_max, 0.105e-3, 1e-12);
 }
 END_TEST
 
@@ -183,7 +206,7 @@ START_TEST(test_motor_side) {
   ethd__metrics m = measure();
   ck_assert_int_eq(m.reason, ETHD_TAP_OK);
   ck_assert_double_eq(m.v_rvo, 0.4);
-  ck_assert_double_eq(m.v_of, 0.4);
+  ck_assert_double_eq_tol(m.v_of, 0.4, 1e-15);
 }
 END_TEST
 
@@ -247,7 +270,7 @@ START_TEST(test_by_finger) {
   ck_assert_int_eq(m.reason, ETHD_TAP_OK);
   ck_assert_double_eq_tol(m.v_hand, 0.4, 1e-9);
   ck_assert_double_eq_tol(m.touch_depth, -0.2e-3, 1e-12);
-  ck_assert(m.eps_felt == 0.0012 && fabs(m.v_of - 0.01) < 1e-12 && isnan(m.v_rvo));
+  ck_assert(m.eps_felt == 0.0012 && fabs(m.v_of_tick - 0.01) < 1e-12 && isnan(m.v_rvo));
   ck_assert_int_eq(by_finger(60, -0.2e-3, 0.03, 0).reason, ETHD_TAP_EARLY_CONTACT); /* near, but it moves */
   ck_assert_int_eq(by_finger(60, -0.4e-3, 0.01, 0).reason, ETHD_TAP_EARLY_CONTACT); /* it stands too far off */
   ck_assert_int_eq(by_finger(60, 0.1e-3, 0.3, 0).reason, ETHD_TAP_OK);              /* behind the wall */
@@ -272,6 +295,7 @@ int main(void) {
   TCase *all = tcase_create("all");
   tcase_add_checked_fixture(all, setup, NULL);
   tcase_add_test(all, test_meeting_and_touch);
+  tcase_add_test(all, test_touch_between_ticks);
   tcase_add_test(all, test_window_of_the_smallest_speed);
   tcase_add_test(all, test_first_rebound);
   tcase_add_test(all, test_no_rebound);
