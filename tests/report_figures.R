@@ -112,6 +112,21 @@ for (k in seq_len(nrow(pairs))) {
     within_noise(paste(what, "Cliff's interval"), r$cliff_low, r$cliff_high, bootstrap(sides, cliff))
 }
 holm("pairs", pairs)
+declared <- file.path("report", "primary.csv")
+if (file.exists(file.path(study, declared))) {
+  rows <- read(declared); power <- tail(readLines(file.path(study, "power.txt")), 2)
+  same("primary outcomes", paste(rows$metric, rows$transition_b, rows$transition_a, rows$speed), c("d_max smooth offset high", "v_of offset smooth low"))
+  for (k in 1:2) {
+    r <- rows[k, ]; figure <- taps[[r$metric]]
+    x <- own(figure, r$transition_b, r$speed) - own(figure, r$transition_a, r$speed); x <- x[!is.na(x)]
+    difference(paste("primary", k), r, x, "mean_b_minus_a")
+    reached <- function(n) power.t.test(n, mean(x), sd(x), 0.025, type = "paired", strict = TRUE)$power >= 0.8
+    below <- 6; n <- 10000 # 2^(1 - 7) is the first p of signs under 0.025
+    while (n - below > 1) { middle <- (n + below) %/% 2; if (reached(middle)) n <- middle else below <- middle }
+    same(paste("participants needed", k), as.numeric(sub(".* ", "", power[k])), n)
+  }
+  holm("primary", rows)
+}
 rows <- report("interaction.csv")
 for (k in seq_len(nrow(rows))) {
   r <- rows[k, ]; figure <- taps[[r$metric]]

@@ -16,10 +16,12 @@ run tar -xJf tests/reference/report/studies.tar.xz -C "$folder/made"
 # missing cells and a questionnaire of their own.
 for kind in plain ties missing; do
   here=$folder/$kind
+  printf '\n[outcomes]\nprimary = d_max:smooth-offset:high, v_of:offset-smooth:low\n' >>"$folder/made/$kind/made.study"
   run "$study" --quiet "$folder/made/$kind/made.study" --out "$here"
   rm -f "$here/SHA256SUMS" # the taps are other ones now
   cp "$folder/made/$kind/taps.csv" "$folder/made/$kind/survey.csv" "$here"
   run "$report" "$here"
+  "$report" --power "$here" >"$here/power.txt" || failed=1
 done
 # A simulated crowd of one tap a cell, of whom few have valid ones in all four cells.
 run "$study" "$BUILD/share/ethd/crowd.study" --simulate 60 --out "$folder/crowd"

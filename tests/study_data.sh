@@ -194,6 +194,17 @@ words pages 'consent1 = \0327\0251' 'consent1: .* (U+05E9) is written from right
 words survey 'q1_answers = one' 'q1: one answer; "this | that", two to nine, or text are allowed'
 grep -nE '(page_add\(.*|keys = )"[A-Za-z]' apps/screen/*.c && fail "words of the screen that no study file can replace"
 
+# ---- primary outcomes: only figures that the report knows, of this study's strategies and speeds; the plan's hash is the folder's ----
+figures=$(PYTHONPATH=apps/python "${PYTHON:-python3}" -c "from ethd_programs.report.taps import QUANTITIES; print(', '.join(QUANTITIES))")
+printf '[study]\nparticipants = 1\ntaps = 1\ntraining = 0\n[outcomes]\nprimary = eps:smooth-offset:hi\n' >"$folder/plan.study"
+refuse 2 "plan.study:6: outcomes.primary: found \"eps:smooth-offset:hi\", .*; figures are $figures\$" "$study" "$folder/plan.study" --plan
+sed 's/:hi$/:high/' "$folder/plan.study" >"$folder/right.study"
+"$study" "$folder/right.study" --plan >"$folder/plan" || fail "--plan with outcomes"
+grep -q '^Primary outcomes: eps:smooth-offset:high$' "$folder/plan" || fail "the plan has no outcome"
+"$study" --quiet "$folder/right.study" --out "$folder/planned" >/dev/null || fail "a study with outcomes"
+grep -qx "Hash of study.*: $(sed -n 's/^hash //p' "$folder/planned/versions.txt")" "$folder/plan" || fail "the plan's hash isn't the folder's"
+refuse 2 'declares no primary outcomes' "$BUILD/bin/ethd-report" --power "$folder/station1"
+
 # ---- orders: printed, kept, and counted here ----
 printf '[study]\nparticipants = 12\nstrategies = abrupt,smooth,offset\norder = latin\ntraining = 1\n' >"$folder/orders.study"
 "$study" "$folder/orders.study" --plan >"$folder/plan" || fail "--plan"

@@ -34,8 +34,9 @@ static void put_truth(FILE *file, const char *key, bool truth) {
 
 static void put_words(FILE *file, const char *key, const ethd__word_list *list) {
   put_key(file, key);
+  putc('[', file);
   for (size_t i = 0; i < list->count; i++) {
-    fputs(i ? ", " : "[", file);
+    if (i) fputs(", ", file);
     ethd__json_word(file, list->word[i]);
   }
   putc(']', file);
@@ -58,6 +59,8 @@ static void put_protocol(FILE *file, const ethd__folder *folder) {
   put_number(file, "margin_v_of_mps", p->margin_v_of);
   put_number(file, "margin_v_rmin_mps", p->margin_v_rmin);
   put_words(file, "strategies", &p->strategies);
+  put_words(file, "primary", &p->primary);
+  put_word(file, "exclusions", p->exclusions);
 }
 
 static void put_speeds(FILE *file, const ethd_plant *plant) {

@@ -237,9 +237,16 @@ int ethd__command_describe(const ethd__study_options *o) {
 }
 
 int ethd__command_plan(const ethd__study_options *o) {
+  char message[ETHD_MESSAGE_MAX], hash[ETHD_SHA256_TEXT];
   ethd__protocol protocol;
+  ethd__loaded loaded;
   load_study(o, &protocol);
+  ethd__folder_device(&protocol, &loaded);
+  const ethd__folder_parts parts = {&protocol, &loaded, o->finger, 0};
+  check(ethd__folder_plan_hash(&parts, hash, message), message);
   ethd__plan_print(stdout, &protocol);
+  printf("Hash of study, configuration, scene, plant and movements: %s\n", hash);
+  ethd__loaded_free(&loaded);
   ethd__protocol_free(&protocol);
   return ETHD_EXIT_DONE;
 }

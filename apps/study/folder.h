@@ -43,6 +43,10 @@ typedef struct ethd__folder_parts {
 ETHD_MUST_CHECK ethd_status ethd__folder_make(const char *folder, const ethd__folder_parts *parts,
                                               char message[ETHD_MESSAGE_MAX]);
 
+/* Gives the hash that the folder's versions.txt would say. */
+ETHD_MUST_CHECK ethd_status ethd__folder_plan_hash(const ethd__folder_parts *parts, char out[ETHD_SHA256_TEXT],
+                                                   char message[ETHD_MESSAGE_MAX]);
+
 typedef struct ethd__folder {
   char *path;
   char *finger;       /* the movement for all hands, or the folder of movements; NULL: none */

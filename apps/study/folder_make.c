@@ -257,6 +257,14 @@ static ethd_status make(const wanted_list *list, const char *folder) {
   return status ? status : write_all(list, folder);
 }
 
+static void drop(wanted_list *list) {
+  for (size_t i = 0; i < list->count; i++) {
+    free(list->file[i].name);
+    free(list->file[i].text);
+  }
+  free(list->file);
+}
+
 ethd_status ethd__folder_make(const char *folder, const ethd__folder_parts *parts, char message[ETHD_MESSAGE_MAX]) {
   wanted_list list = {.parts = parts, .message = message};
   ethd__claim claim = ETHD_CLAIM_NONE;
@@ -264,10 +272,19 @@ ethd_status ethd__folder_make(const char *folder, const ethd__folder_parts *part
   if (!status) status = ethd__claim_wait(folder, &claim, message);
   if (!status) status = make(&list, folder);
   ethd__claim_release(&claim);
-  for (size_t i = 0; i < list.count; i++) {
-    free(list.file[i].name);
-    free(list.file[i].text);
-  }
-  free(list.file);
+  drop(&list);
+  return status;
+}
+
+ethd_status ethd__folder_plan_hash(const ethd__folder_parts *parts, char out[ETHD_SHA256_TEXT],
+                                   char message[ETHD_MESSAGE_MAX]) {
+  wanted_list list = {.parts = parts, .message = message};
+  ethd__sha256 sum;
+  ethd_status status = want_all(&list);
+  ethd__sha256_begin(&sum);
+  for (size_t i = 0; i < list.count; i++)
+    if (list.file[i].hashed) ethd__sha256_add(&sum, list.file[i].text, list.file[i].length);
+  ethd__sha256_end(&sum, out);
+  drop(&list);
   return status;
 }

@@ -159,8 +159,17 @@ static void warn(FILE *file, const ethd__protocol *p) {
   fputc('\n', file);
 }
 
+static void print_outcomes(FILE *file, const ethd__protocol *p) {
+  fprintf(file, "\nStudy %s, %" PRIu32 " participant%s, %" PRIu32 " valid tap%s a cell\nPrimary outcomes:", p->name,
+          p->participants, ethd__s(p->participants), p->taps, ethd__s(p->taps));
+  for (size_t i = 0; i < p->primary.count; i++) fprintf(file, "%s %s", i ? "," : "", p->primary.word[i]);
+  fprintf(file, "%s\nExclusions: %s\n", p->primary.count ? "" : " none declared",
+          p->exclusions ? p->exclusions : "none declared");
+}
+
 void ethd__plan_print(FILE *file, const ethd__protocol *p) {
   print_orders(file, p);
   print_balance(file, p);
   warn(file, p);
+  print_outcomes(file, p);
 }

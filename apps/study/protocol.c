@@ -46,10 +46,11 @@ static ethd_status known_sections(const ethd_ini *ini, const char *name, char *m
   for (uint32_t i = 0; i < ini->section_count; i++) {
     const ethd_ini_section *s = &ini->sections[i];
     if (!ethd__entry_section(s->name))
-      return ethd__say(message, ETHD_E_UNKNOWN,
-                       "%s:%d: %s: unknown section; study, device, hand, validity, statistics, before, survey, after, "
-                       "pages, words, grid are allowed",
-                       name, s->line, ethd__quote(s->name, strlen(s->name), quote));
+      return ethd__say(
+          message, ETHD_E_UNKNOWN,
+          "%s:%d: %s: unknown section; study, device, hand, validity, statistics, outcomes, before, survey, after, "
+          "pages, words, grid are allowed",
+          name, s->line, ethd__quote(s->name, strlen(s->name), quote));
   }
   return ETHD_OK;
 }
@@ -63,6 +64,36 @@ static ethd_status check_questions(const ethd__entry *last, const ethd__protocol
   if (fault) return ethd__say(last->message, ETHD_E_RANGE, "%s:%d: %s: %s", last->file, fault->line, name, what);
   return ethd__say(last->message, ETHD_E_RANGE, "%s:%d: survey.q1: stands there without study.survey = on", last->file,
                    p->questionnaire.question[ETHD_ASK_BLOCK][0].line);
+}
+
+/* Whether the word is FIGURE:STRATEGY-STRATEGY:SPEED of this study. */
+static bool is_outcome(const ethd__protocol *p, const char *word) {
+  static const char *const figures[] = {"v_rvo", "v_of",       "d_max",  "v_rmin",      "delta_s", "eps",
+                                        "delay", "peak_force", "v_hand", "touch_depth", "eps_felt"};
+  for (size_t f = 0; f < sizeof figures / sizeof *figures; f++)
+    for (size_t i = 0; i < p->strategies.count * p->strategies.count * p->speeds.count; i++) {
+      char text[128];
+      size_t a = i % p->strategies.count, b = i / p->strategies.count % p->strategies.count;
+      snprintf(text, sizeof text, "%s:%s-%s:%s", figures[f], p->strategies.word[a], p->strategies.word[b],
+               p->speeds.word[i / p->strategies.count / p->strategies.count]);
+      if (a != b && !strcmp(text, word)) return true;
+    }
+  return false;
+}
+
+static ethd_status check_outcomes(const ethd_ini *ini, const ethd__entry *last, const ethd__protocol *p) {
+  ethd__entry e = *last;
+  e.key = ethd_ini_find(ini, "outcomes", "primary");
+  for (size_t i = 0; i < p->primary.count; i++) {
+    char quote[ETHD_QUOTE_MAX];
+    const char *word = p->primary.word[i];
+    if (!is_outcome(p, word))
+      return ethd__entry_refuse(&e, ETHD_E_UNKNOWN,
+                                "found %s, FIGURE:STRATEGY-STRATEGY:SPEED of this study is allowed; figures are v_rvo, "
+                                "v_of, d_max, v_rmin, delta_s, eps, delay, peak_force, v_hand, touch_depth, eps_felt",
+                                ethd__quote(word, strlen(word), quote));
+  }
+  return ETHD_OK;
 }
 
 /* Checks the relations between keys. */
@@ -97,6 +128,7 @@ static ethd_status fill(const ethd_ini *ini, const char *name, ethd__protocol *p
   }
   if (!status && !ethd__questionnaire_fill(&p->questionnaire)) status = ethd__no_memory(message, name);
   if (!status) status = check_questions(&e, p);
+  if (!status) status = check_outcomes(ini, &e, p);
   return status ? status : check(ini, &e, p);
 }
 
@@ -132,10 +164,11 @@ ethd_status ethd__protocol_load(const char *path, ethd__protocol *out, char mess
 }
 
 void ethd__protocol_free(ethd__protocol *p) {
-  char *own[] = {p->path, p->text, p->folder, p->name, p->config, p->plant, p->motion};
+  char *own[] = {p->path, p->text, p->folder, p->name, p->config, p->plant, p->motion, p->exclusions};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) free(own[i]);
   ethd__word_list_free(&p->strategies);
   ethd__word_list_free(&p->speeds);
+  ethd__word_list_free(&p->primary);
   ethd__questionnaire_free(&p->questionnaire);
   for (size_t i = 0; i < p->axis_count; i++) {
     free(p->axes[i].key);

@@ -25,6 +25,10 @@
      margin_v_of = 0.02                   m/s: the paper's v_th, below which the ring counts as static
      margin_v_rmin = 0.02
 
+     [outcomes]                           what the study is to show: ethd-report tests these alone as one family
+     primary = d_max:smooth-offset:high   FIGURE:STRATEGY-STRATEGY:SPEED[,..], figures as in the report's pairs.csv
+     exclusions = TEXT                    who is left out, in words
+
    source = recorded follows recorded movements, people are fingers in a device, mouse a pointer on the screen. With
    people, the configuration's [device] is opened as ethd-run does; the plant then only says how fast low and high are.
    All keys have defaults; the figures above are they, but strategies, speeds and order of the paper.
@@ -65,7 +69,8 @@ typedef struct ethd__protocol {
   char *name, *config, *plant, *motion; /* NULL where not given, but the name */
   uint64_t seed;
   uint32_t participants, training, taps, attempts, rest;
-  ethd__word_list strategies, speeds;
+  ethd__word_list strategies, speeds, primary;
+  char *exclusions; /* NULL: not given */
   ethd__order order;
   ethd__hands hands;
   bool survey, record;

@@ -124,19 +124,22 @@ static ethd_status add_word(const ethd__entry *e, ethd__word_list *words, const 
   return ETHD_OK;
 }
 
+static bool is_any(const char *word) { return *word; }
+
+/* Words as file names have them; of outcomes, which are checked later, any. */
 static ethd_status set_words(const ethd__entry *e, const key_row *row, void *at) {
+  bool (*is_word)(const char *) = row && !strcmp(row->section, "outcomes") ? is_any : ethd__file_word;
   ethd__word_list *words = at;
   ethd_status status = ETHD_OK;
   char *list = strdup(e->key->value), *rest = list, *word;
-  (void)row;
   if (!list) return ethd__entry_refuse(e, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   ethd__word_list_free(words);
   words->line = e->key->line;
   while (!status && (word = strsep(&rest, ","))) {
     word += strspn(word, " \t");
     word[strcspn(word, " \t")] = 0;
-    status = ethd__file_word(word) ? add_word(e, words, word)
-                                   : found(e, e->key->value, "word,word.. of letters, digits, _ . + -");
+    status =
+        is_word(word) ? add_word(e, words, word) : found(e, e->key->value, "word,word.. of letters, digits, _ . + -");
   }
   free(list);
   return status;
@@ -173,6 +176,8 @@ static const key_row rows[] = {
     {"statistics", "margin_d_max", set_number, AT(margin_d_max), 1e-6, 0.1, NULL},
     {"statistics", "margin_v_of", set_number, AT(margin_v_of), 1e-6, 1, NULL},
     {"statistics", "margin_v_rmin", set_number, AT(margin_v_rmin), 1e-6, 1, NULL},
+    {"outcomes", "primary", set_words, AT(primary), 0, 0, NULL},
+    {"outcomes", "exclusions", set_text, AT(exclusions), 0, 0, NULL},
 };
 enum { ROWS = sizeof rows / sizeof *rows };
 

@@ -15,6 +15,7 @@ Examples:
   ethd-report session
   ethd-report left-room right-room --out report
   ethd-report session --beside crowd --tap P02-06-004
+  ethd-study my.study --simulate 200 --out crowd && ethd-study --merge crowd && ethd-report --power crowd
 """
 
 
@@ -28,6 +29,8 @@ def _arguments(arguments: Sequence[str]) -> Any:
     parser.add_argument("-o", "--out", metavar="DIR", help="where the report goes (default: report, in the study's folder)")
     parser.add_argument("--plugins", action="store_true", help="run the plugins that the folder's configuration names")
     parser.add_argument("--point", metavar="K", default="0", help="point of a grid that is shown in full (0)")
+    parser.add_argument("--power", action="store_true", help="instead of a report, print how many participants show the study's primary outcomes, "
+                        "if people differ as these simulated ones do")
     parser.add_argument("--seed", metavar="S", default="1", help="seed of the bootstrap (1)")
     parser.add_argument("--tap", metavar="NAME", help="draw this tap (P02-06-004), not the typical one of each cell")
     parser.finish()
@@ -58,15 +61,27 @@ def _print_coverage(runs: int, seed: int) -> int:
     return DONE
 
 
+def _print_power(arg: Any, scratch: str) -> int:
+    from ethd_programs.report.primary import print_power
+    from ethd_programs.report.study import Folder
+    from ethd_programs.report.taps import of_folder
+
+    folder = Folder(arg.folders, arg.plugins, os.path.join(scratch, "study"))
+    if not folder.facts["primary"]:
+        raise Refusal(f"{arg.folders[0]}: its study file declares no primary outcomes ([outcomes] primary = d_max:smooth-offset:high)")
+    print_power(folder.name, folder.facts["primary"], of_folder(folder, arg.point)[0][arg.point])
+    return DONE
+
+
 def _report(arg: Any, scratch: str) -> int:
-    from ethd_programs.report import comparisons, figures, survey, taps, traces, words
+    from ethd_programs.report import comparisons, figures, primary, survey, taps, traces, words
     from ethd_programs.report.output import ReportFolder
     from ethd_programs.report.page import Page
     from ethd_programs.report.pictures import Pictures
     from ethd_programs.report.report import Report
     from ethd_programs.report.study import Folder, check_sums
 
-    sections = (comparisons.table1, comparisons.claims, figures.boxes, figures.reasons, figures.validity, comparisons.pairs,
+    sections = (primary.primary, comparisons.table1, comparisons.claims, figures.boxes, figures.reasons, figures.validity, comparisons.pairs,
                 comparisons.interaction, survey.survey, traces.forces, traces.traces, traces.encounter, figures.tidy, figures.grid)
     folder = Folder(arg.folders, arg.plugins, os.path.join(scratch, "study"))
     points, absent = taps.of_folder(folder, arg.point)
@@ -86,7 +101,7 @@ def _report(arg: Any, scratch: str) -> int:
             for section in sections:
                 section(r)
             body, r.page = r.page, Page()  # the head counts what the sections found
-            words.head(r)
+            words.head(r, body)
             r.page.add(body)
             words.methods(r)
             words.foot(r, sums.result())
@@ -104,7 +119,7 @@ def _main(arguments: Sequence[str]) -> int:
         return _print_coverage(arg.coverage, arg.seed)
     try:
         with tempfile.TemporaryDirectory(prefix="ethd-report-") as scratch:
-            return _report(arg, scratch)
+            return (_print_power if arg.power else _report)(arg, scratch)
     except OSError as e:
         raise Refusal(f"{e.filename or 'ethd-report'}: {e.strerror}", FAILED) from None
 

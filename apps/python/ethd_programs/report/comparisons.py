@@ -125,7 +125,7 @@ def claims(r: Report) -> None:
 
 
 @dataclass
-class _Within:
+class Within:
     """Two strategies at one speed, or their difference at one speed less that at another."""
 
     quantity: Quantity
@@ -145,7 +145,7 @@ class _Within:
         return f"{self.b.law} - {self.a.law}, {self.a.speed.word}"
 
 
-def _within(r: Report, quantity: Quantity, a: Cell, b: Cell, less: Optional[Tuple[Cell, Cell]] = None) -> Optional[_Within]:
+def within(r: Report, quantity: Quantity, a: Cell, b: Cell, less: Optional[Tuple[Cell, Cell]] = None) -> Optional[Within]:
     """None: nobody has taps in all of these cells."""
     values = r.taps.medians(b, quantity) - r.taps.medians(a, quantity)
     if less:
@@ -154,7 +154,7 @@ def _within(r: Report, quantity: Quantity, a: Cell, b: Cell, less: Optional[Tupl
     if not len(values):
         return None
     tested = len(values) >= FEWEST_PEOPLE and not math.isnan(margin)
-    out = _Within(quantity, a, b, less, compare(values, r.seed), equivalent(values, -margin, margin) if tested else Equivalence())
+    out = Within(quantity, a, b, less, compare(values, r.seed), equivalent(values, -margin, margin) if tested else Equivalence())
     if not less:
         taps = [(cell.of(quantity), cell.person, side) for side, cell in enumerate((a, b))]
         value, person = np.concatenate([t[0] for t in taps]), np.concatenate([t[1] for t in taps])
@@ -165,7 +165,7 @@ def _within(r: Report, quantity: Quantity, a: Cell, b: Cell, less: Optional[Tupl
     return out
 
 
-def _print_tests(r: Report, tests: Sequence[_Within], caption: str, what: str, with_alike: bool) -> None:
+def print_tests(r: Report, tests: Sequence[Within], caption: str, what: str, with_alike: bool) -> None:
     header = ("figure", what, "n (> 0)", "mean", "95 %", "unit", "p", "p, Holm", "p, alike" if with_alike else None)
     r.page.table(caption, header, 2)
     for w in tests:
@@ -184,7 +184,7 @@ def _print_tests(r: Report, tests: Sequence[_Within], caption: str, what: str, w
     r.page.end_table()
 
 
-def _test_row(w: _Within) -> List[Text]:
+def test_row(w: Within) -> List[Text]:
     c, q = w.paired, w.quantity
     speeds = (w.a.speed.word, w.less[0].speed.word) if w.less else (w.a.speed.word,)
     row: List[Text] = [q.key, q.unit, w.a.law, w.b.law, *speeds, c.n, c.positive, c.mean, c.sd, c.interval.low, c.interval.high, c.median, c.p,
@@ -194,7 +194,7 @@ def _test_row(w: _Within) -> List[Text]:
     return row
 
 
-def _corrected(tests: Sequence[Optional[_Within]]) -> List[_Within]:
+def corrected(tests: Sequence[Optional[Within]]) -> List[Within]:
     made = [w for w in tests if w]
     for w, p in zip(made, holm([w.paired.p for w in made])):
         w.holm = p
@@ -213,27 +213,27 @@ def pairs(r: Report) -> None:
         r.page.put(" <b>No significance is claimed:</b> with %d participant%s the smallest two-sided p is %.3g.", people, plural(people),
                    min(1, 2 / 2**people))
     r.page.put("</p>\n")
-    tests = _corrected([_within(r, q, a, b) for q in QUANTITIES.values() for a, b in _pairs_at_one_speed(r.taps)])
+    tests = corrected([within(r, q, a, b) for q in QUANTITIES.values() for a, b in _pairs_at_one_speed(r.taps)])
     r.differences, r.significant = len(tests), sum(w.holm < 0.05 for w in tests)
-    _print_tests(r, tests, "Differences of participants' medians. n: participants with both, in brackets those with a difference above 0. Family "
+    print_tests(r, tests, "Differences of participants' medians. n: participants with both, in brackets those with a difference above 0. Family "
                  "of Holm's correction: the p of this table. p, alike: equivalence within the study's margin, not corrected", "difference", True)
     r.output.table("pairs.csv", "metric,unit,transition_a,transition_b,speed,participants,positive,mean_b_minus_a,sd,mean_low,mean_high,median,p,"
-                   "p_holm,d_z,d_z_low,d_z_high,cliff_delta,cliff_low,cliff_high,mean_low_90,mean_high_90,p_equivalent", map(_test_row, tests))
+                   "p_holm,d_z,d_z_low,d_z_high,cliff_delta,cliff_low,cliff_high,mean_low_90,mean_high_90,p_equivalent", map(test_row, tests))
 
 
 def interaction(r: Report) -> None:
     r.page.heading("interaction", "Does the strategy matter more at higher speed?")
     r.page.put("<p>The interaction of strategy and speed: each participant's difference between two strategies at one speed, less the same "
                "difference at a lower speed. It is zero where the speed makes no difference to what the strategy does. %s</p>\n", r.caveat)
-    tests: List[Optional[_Within]] = []
+    tests: List[Optional[Within]] = []
     for q in QUANTITIES.values():
         for a, b in _pairs_at_one_speed(r.taps):
             for low_a in r.taps.cells:
                 low_b = r.taps.cell(b.law, low_a.speed.word)
                 if low_a.law == a.law and low_a.speed.centre < a.speed.centre and low_b:
-                    tests.append(_within(r, q, a, b, (low_a, low_b)))
-    made = _corrected(tests)
-    _print_tests(r, made, "Differences of differences, tested by an exact sign-flip test. Family of Holm's correction: the p of this table",
+                    tests.append(within(r, q, a, b, (low_a, low_b)))
+    made = corrected(tests)
+    print_tests(r, made, "Differences of differences, tested by an exact sign-flip test. Family of Holm's correction: the p of this table",
                  "difference of differences", False)
     r.output.table("interaction.csv", "metric,unit,transition_a,transition_b,speed,less_speed,participants,positive,mean,sd,mean_low,mean_high,"
-                   "median,p,p_holm,d_z,d_z_low,d_z_high", map(_test_row, made))
+                   "median,p,p_holm,d_z,d_z_low,d_z_high", map(test_row, made))

@@ -33,6 +33,7 @@ def escaped(text: str) -> str:
 class Page:
     def __init__(self) -> None:
         self._parts: List[Union[str, "Future[bytes]"]] = []
+        self.names = {"methods"}  #: of headings; that one comes last
 
     def put(self, markup: str, *values: Union[str, int, float]) -> None:
         """Markup of our own, in which each %s stands for text, as %d, %g and the like stand for numbers."""
@@ -42,6 +43,7 @@ class Page:
         self._parts += other._parts
 
     def heading(self, name: str, text: str) -> None:
+        self.names.add(name)
         self.put('<h2 id="%s">%s</h2>\n', name, text)
 
     def picture(self, png: "Future[bytes]", caption: str) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from ethd_programs.cli import plural
 from ethd_programs.report import claims as paper
 from ethd_programs.report.coverage import TAPS, known
+from ethd_programs.report.page import Page
 from ethd_programs.report.report import LEADERS, Report
 from ethd_programs.report.statistics import DRAWS, FEW_DRAWS, FEWEST_PEOPLE
 
@@ -16,8 +17,8 @@ _STRATEGIES = {
     "offset": "the paper's VO-B: the ring brakes when it meets the wall, which is then rendered where the ring stopped",
     "predictive": "not the paper's: the ring brakes before the wall, so as to stand in it when the finger comes",
 }
-_LINKS = (("table1", "Table 1"), ("claims", "The paper's sentences"), ("figures", "Figures"), ("delay", "Delay"), ("valid", "Valid taps"),
-          ("pairs", "Comparison"), ("interaction", "Interaction"), ("survey", "Survey"), ("forces", "Forces"), ("traces", "Traces"),
+_LINKS = (("primary", "Primary outcomes"), ("table1", "Table 1"), ("claims", "The paper's sentences"), ("figures", "Figures"),
+          ("delay", "Delay"), ("valid", "Valid taps"), ("pairs", "Comparison"), ("interaction", "Interaction"), ("survey", "Survey"), ("forces", "Forces"), ("traces", "Traces"),
           ("model", "Mixed model"), ("methods", "Methods"))
 
 
@@ -130,12 +131,12 @@ def _found(r: Report) -> None:
     r.page.put(".</li>\n")
 
 
-def head(r: Report) -> None:
+def head(r: Report, body: Page) -> None:
     r.page.put('<ul class="note">\n')
     for part in (_numbers, _strategies, _task, _people, _left_out, _device, _certainty, _found):
         part(r)
     r.page.put("</ul>\n<nav>")
-    for name, title in _LINKS:
+    for name, title in (link for link in _LINKS if link[0] in body.names):
         r.page.put('<a href="#%s">%s</a>', name, title)
     r.page.put("</nav>\n")
 
