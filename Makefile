@@ -345,7 +345,8 @@ bench bench-quick: $(B)/tests/bench $(PEERS) $(SHARE)
 	@BUILD='$(B)' QUICK='$(QUICK)' WHAT='$(WHAT)' sh tests/bench/bench.sh \
 	  'commit $(or $(shell git describe --always --dirty 2>/dev/null),unknown); $(CC) $(BASE)'
 
-# The long ones: minutes.
+# The long ones: hours, of which one test may take any part.
+stress: export CK_DEFAULT_TIMEOUT := 360000
 stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_fuzz_decoder \
   $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_store $(B)/tests/test_servo_driver \
   $(B)/tests/test_fuzz_map $(B)/tests/test_promises $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \

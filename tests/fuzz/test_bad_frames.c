@@ -112,7 +112,7 @@ static void damage_answer(int function, sweep *s) {
   }
 }
 
-START_TEST(test_servo) {
+TEST(test_servo) {
   static const int functions[] = {3, 4, 16, 23};
   const struct {
     int transport, crc;
@@ -135,7 +135,6 @@ START_TEST(test_servo) {
   ck_assert_int_eq(s.pairs, 2 * (3 * (56 * 55 + 72 * 71 + 88 * 87 + 104 * 103) + 4 * 64 * 63) / 2);
   ck_assert_int_eq(s.data, 8 * 3 * (2 + 4 + 6 + 8));
 }
-END_TEST
 
 /* ---- the ring's frames ---- */
 
@@ -165,7 +164,7 @@ static int decode(const uint8_t *middle, size_t length) {
   return count;
 }
 
-START_TEST(test_ring) {
+TEST(test_ring) {
   const int bits = 8 * ETHD__FRAME_WIRE;
   long lengths = 0, flips = 0, pairs = 0;
   for (int i = 0; i < 3; i++) {
@@ -198,15 +197,4 @@ START_TEST(test_ring) {
   ck_assert_int_eq(lengths, 44 + 44);
   ck_assert_int_eq(flips, 352);
   ck_assert_int_eq(pairs, 352 * 351 / 2);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("bad_frames");
-  TCase *t = tcase_create("bad_frames");
-  tcase_set_timeout(t, 120);
-  tcase_add_test(t, test_servo);
-  tcase_add_test(t, test_ring);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

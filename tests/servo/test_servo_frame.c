@@ -30,7 +30,7 @@ static int answer(const uint8_t *bytes, int length) {
 #define ANSWER(...) answer((const uint8_t[]){__VA_ARGS__}, (int)sizeof((uint8_t[]){__VA_ARGS__}))
 
 /* SVD48V Series User Manual V2.0, p. 12 and 13: each frame as it is printed. */
-START_TEST(test_svd48v_manual) {
+TEST(test_svd48v_manual) {
   speak(ETHD__SERVO_RTU, ETHD__SERVO_CRC_HIGH_FIRST, 0xEE);
   ethd__servo_frame_read(&map, (ethd__servo_span){map.unit, ETHD__SERVO_HOLDING, 0x5410, 1}, &f);
   IS(0xEE, 0x03, 0x54, 0x10, 0x00, 0x01, 0x60, 0x83);
@@ -44,11 +44,10 @@ START_TEST(test_svd48v_manual) {
   IS(0xEE, 0x10, 0x51, 0x00, 0x00, 0x01, 0x02, 0x00, 0x02, 0x60, 0xEF);
   ck_assert_int_eq(ANSWER(0xEE, 0x10, 0x51, 0x00, 0x00, 0x01, 0xAA, 0x07), 0);
 }
-END_TEST
 
 /* MODBUS over serial line V1.02 has the checksum's low byte first; the application protocol V1.1b3 has these exchanges:
    p. 15 (read holding registers), p. 30 (write multiple registers), p. 38 (read and write). */
-START_TEST(test_standard) {
+TEST(test_standard) {
   speak(ETHD__SERVO_RTU, ETHD__SERVO_CRC_LOW_FIRST, 1);
   ethd__servo_frame_read(&map, (ethd__servo_span){map.unit, ETHD__SERVO_HOLDING, 0, 10}, &f);
   IS(0x01, 0x03, 0x00, 0x00, 0x00, 0x0A, 0xC5, 0xCD);
@@ -72,7 +71,6 @@ START_TEST(test_standard) {
   ethd__servo_frame_read(&map, (ethd__servo_span){map.unit, ETHD__SERVO_INPUT, 8, 1}, &f);
   IS(0, 0, 0, 0, 0, 6, 17, 0x04, 0x00, 0x08, 0x00, 0x01);
 }
-END_TEST
 
 static void seal(uint8_t *a, int length) {
   uint16_t crc = ethd__servo_crc(a, length - 2);
@@ -81,7 +79,7 @@ static void seal(uint8_t *a, int length) {
 }
 
 /* Noise is told by its first bytes, without waiting until the answer is due. */
-START_TEST(test_begins) {
+TEST(test_begins) {
   const uint8_t good[] = {0xEE, 0x03}, refused[] = {0xEE, 0x83}, other[] = {0xEE, 0x10}, noise[] = {0x5A};
   speak(ETHD__SERVO_RTU, ETHD__SERVO_CRC_HIGH_FIRST, 0xEE);
   ethd__servo_frame_read(&map, (ethd__servo_span){map.unit, ETHD__SERVO_HOLDING, 0x5410, 1}, &f);
@@ -95,9 +93,8 @@ START_TEST(test_begins) {
   for (int n = 0; n <= 8; n++) ck_assert(ethd__servo_frame_begins(&map, &f, tcp, n));
   ck_assert(ethd__servo_frame_begins(&map, &f, elses, 6) && !ethd__servo_frame_begins(&map, &f, elses, 7));
 }
-END_TEST
 
-START_TEST(test_wrong_answers) {
+TEST(test_wrong_answers) {
   uint8_t good[] = {1, 3, 4, 0, 7, 0, 2, 0, 0}, refused[] = {1, 0x83, 2, 0, 0};
   speak(ETHD__SERVO_RTU, ETHD__SERVO_CRC_HIGH_FIRST, 1);
   ethd__servo_frame_read(&map, (ethd__servo_span){map.unit, ETHD__SERVO_HOLDING, 0x5414, 2}, &f);
@@ -128,16 +125,4 @@ START_TEST(test_wrong_answers) {
   uint8_t elsewhere[] = {1, 16, 0x53, 0x09, 0, 2, 0, 0};
   seal(elsewhere, 8);
   ck_assert_int_eq(ethd__servo_frame_take(&map, &f, elsewhere, 8, NULL), EMBBADDATA);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("servo_frame");
-  TCase *t = tcase_create("servo_frame");
-  tcase_add_test(t, test_svd48v_manual);
-  tcase_add_test(t, test_standard);
-  tcase_add_test(t, test_wrong_answers);
-  tcase_add_test(t, test_begins);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -129,7 +129,7 @@ static int link_cycles(int *errors) {
 }
 
 /* Answers of one kind only, as a drive that is only read gives them: RTU has no transaction numbers. */
-START_TEST(test_late_rtu) {
+TEST(test_late_rtu) {
   _Atomic uint64_t at = 20;
   char how[80];
   int errors = 0, stale = 0;
@@ -160,9 +160,8 @@ START_TEST(test_late_rtu) {
   ck_assert_int_le(errors, 5);
   close_link();
 }
-END_TEST
 
-START_TEST(test_late_tcp) {
+TEST(test_late_tcp) {
   _Atomic uint64_t at = 40;
   char how[80];
   int errors = 0;
@@ -186,7 +185,6 @@ START_TEST(test_late_tcp) {
   ck_assert_int_le(errors, 5);
   close_link();
 }
-END_TEST
 
 static mock_act late_sometimes(void *user, uint64_t n, int function) {
   (void)user, (void)function;
@@ -195,7 +193,7 @@ static mock_act late_sometimes(void *user, uint64_t n, int function) {
 
 /* In our own framing, as the standard's order of the checksum isn't this drive's; on two wires what is sent
    comes back. */
-START_TEST(test_own_framing) {
+TEST_LOOP(test_own_framing, 0, 2) {
   const char *given = getenv("ETHD_SERVO_CYCLES");
   const int cycles = given ? atoi(given) : CYCLES;
   int errors = 0, stale = 0;
@@ -222,10 +220,9 @@ START_TEST(test_own_framing) {
   ck_assert_uint_gt(link_.counts.garbled, garbled);
   close_link();
 }
-END_TEST
 
 /* With the other order of the checksum, or with libmodbus, nothing comes. */
-START_TEST(test_other_checksum) {
+TEST(test_other_checksum) {
   uint16_t got;
   for (int order = 0; order < 2; order++)
     for (int asked = 0; asked < 2; asked++) {
@@ -241,14 +238,13 @@ START_TEST(test_other_checksum) {
       mock_stop(&drive);
     }
 }
-END_TEST
 
 /* Even an answer that comes after the quiet, or is the drive's own old one, isn't taken. */
 static mock_act old_sometimes(void *user, uint64_t n, int function) {
   (void)user;
   return (mock_act){n % 7 == 3 && function == 3 ? MOCK_OLD : MOCK_ANSWER, 0, 0};
 }
-START_TEST(test_old_answers) {
+TEST(test_old_answers) {
   int errors = 0;
   open_link(0);
   turn_until(ETHD__SERVO_IDENTIFIED);
@@ -259,11 +255,10 @@ START_TEST(test_old_answers) {
   ck_assert_uint_eq(link_.counts.lost, 0);
   close_link();
 }
-END_TEST
 
 /* ---- lines ---- */
 
-START_TEST(test_baud) {
+TEST(test_baud) {
   char how[80];
   open_mock(1);
   modbus_t *m = naive(250000);
@@ -285,10 +280,9 @@ START_TEST(test_baud) {
   ck_assert_ptr_nonnull(strstr(message, "/dev/null: "));
   mock_stop(&drive);
 }
-END_TEST
 
 /* A line that can't do what its map wants isn't opened; one that hands bytes over late says so. */
-START_TEST(test_line_keys) {
+TEST(test_line_keys) {
   ethd__servo_bus bus;
   open_mock(1);
   ck_assert_int_eq(ethd__servo_bus_open(&map, &bus, message), ETHD_OK);
@@ -300,9 +294,8 @@ START_TEST(test_line_keys) {
   ck_assert_int_eq(bus.fd, -1);
   mock_stop(&drive);
 }
-END_TEST
 
-START_TEST(test_no_delay) {
+TEST(test_no_delay) {
   int on = 0;
   socklen_t size = sizeof on;
   open_link(0);
@@ -310,7 +303,6 @@ START_TEST(test_no_delay) {
   ck_assert_int_ne(on, 0);
   close_link();
 }
-END_TEST
 
 /* A child that does this; 1: it was still at it when its patience ended, or died by a signal. */
 static int child(void (*work)(void)) {
@@ -355,7 +347,7 @@ static void *unplug(void *unused) {
 }
 
 /* The line is taken away, for good. */
-START_TEST(test_unplugged) {
+TEST(test_unplugged) {
   pthread_t thread;
   ck_assert_int_eq(pipe(told), 0);
   open_mock(0);
@@ -381,7 +373,6 @@ START_TEST(test_unplugged) {
   ck_assert_uint_eq(link_.counts.connects, 2);
   close_link();
 }
-END_TEST
 
 static mock_act halves(void *user, uint64_t n, int function) {
   (void)user;
@@ -389,7 +380,7 @@ static mock_act halves(void *user, uint64_t n, int function) {
 }
 
 /* Half an answer, the rest two response times later: whoever returns with it has waited that long. */
-START_TEST(test_byte_timeout) {
+TEST(test_byte_timeout) {
   uint16_t got;
   open_mock(1);
   drive.act = halves;
@@ -407,7 +398,6 @@ START_TEST(test_byte_timeout) {
   ethd__servo_bus_close(&bus);
   mock_stop(&drive);
 }
-END_TEST
 
 static void fill_descriptors(int most) {
   const struct rlimit many = {(rlim_t)most + 64, (rlim_t)most + 64};
@@ -431,17 +421,16 @@ static void link_high(void) {
   abort();
 }
 
-START_TEST(test_descriptor) {
+TEST(test_descriptor) {
   open_mock(0);
   gone_port = atoi(strchr(drive.port, ':') + 1);
   tell("a descriptor over 1023", child(naive_high), "it ends the process");
   ck_assert_int_eq(child(link_high), 0);
   mock_stop(&drive);
 }
-END_TEST
 
 /* Every number that libmodbus makes of two words, read by its other function. */
-START_TEST(test_floats) {
+TEST(test_floats) {
   uint16_t words[2], own[2];
   char how[80];
   const ethd__servo_register r = {.type = ETHD__SERVO_F32, .order = ETHD__SERVO_HIGH_FIRST};
@@ -453,7 +442,6 @@ START_TEST(test_floats) {
   ethd__servo_pack(&r, (double)value, own);
   ck_assert_double_eq(ethd__servo_unpack(&r, own), (double)value);
 }
-END_TEST
 
 /* ---- exceptions ---- */
 
@@ -462,7 +450,7 @@ static mock_act refuse_reads(void *user, uint64_t n, int function) {
   return (mock_act){function == 3 ? MOCK_EXCEPTION : MOCK_ANSWER, *(int *)user, 0};
 }
 
-START_TEST(test_exceptions) {
+TEST(test_exceptions) {
   static const struct {
     int code;
     ethd__servo_outcome outcome;
@@ -492,7 +480,6 @@ START_TEST(test_exceptions) {
   snprintf(says, sizeof says, "%s", strerror(EMBXILADD));
   tell("errors over 112345678", strstr(says, "nknown error") != NULL, says);
 }
-END_TEST
 
 static mock_act bad(void *user, uint64_t n, int function) {
   (void)function;
@@ -500,7 +487,7 @@ static mock_act bad(void *user, uint64_t n, int function) {
 }
 
 /* Damaged answers: none is taken, the link stays, and too many of them are told. */
-START_TEST(test_damaged) {
+TEST(test_damaged) {
   static const mock_kind kinds[] = {MOCK_GARBLE, MOCK_CUT, MOCK_DROP};
   for (int is_rtu = 0; is_rtu < 2; is_rtu++)
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
@@ -522,14 +509,13 @@ START_TEST(test_damaged) {
       close_link();
     }
 }
-END_TEST
 
 static mock_act resets(void *user, uint64_t n, int function) {
   (void)user, (void)function;
   return (mock_act){n % 50 == 49 ? MOCK_RESET : MOCK_ANSWER, 0, 0};
 }
 
-START_TEST(test_reset) {
+TEST(test_reset) {
   open_link(0);
   turn_until(ETHD__SERVO_IDENTIFIED);
   drive.act = resets;
@@ -542,11 +528,10 @@ START_TEST(test_reset) {
   ck_assert_uint_eq(link_.rows[ETHD_FAULT_LINK_LOST], link_.counts.lost);
   close_link();
 }
-END_TEST
 
 /* ---- sequences ---- */
 
-START_TEST(test_sequences) {
+TEST(test_sequences) {
   const double torque[2] = {0.3, -0.2};
   open_link(0);
   drive.words[MOCK_STATUS] = 1;
@@ -568,10 +553,9 @@ START_TEST(test_sequences) {
   ck_assert_uint_eq(drive.words[MOCK_TORQUE1], 0);
   close_link();
 }
-END_TEST
 
 /* A drive that doesn't come: the step's time-out says which and what it had. */
-START_TEST(test_step_timeout) {
+TEST(test_step_timeout) {
   int64_t clock = now();
   open_link(0);
   turn_until(ETHD__SERVO_IDENTIFIED);
@@ -588,10 +572,9 @@ START_TEST(test_step_timeout) {
   ck_assert_int_eq(link_.state, ETHD__SERVO_IDENTIFIED);
   close_link();
 }
-END_TEST
 
 /* 0x17, input registers, registers in values: the same words go over the line. */
-START_TEST(test_other_questions) {
+TEST(test_other_questions) {
   for (int k = 0; k < 3; k++) {
     open_mock(k == 2);
     if (k == 0) map.exchange = ETHD__SERVO_COMBINED;
@@ -609,31 +592,4 @@ START_TEST(test_other_questions) {
     ck_assert_double_eq(link_.raw[map.roles[ETHD__SERVO_POSITION1]], 65538);
     close_link();
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("servo_link");
-  TCase *t = tcase_create("servo_link");
-  tcase_set_timeout(t, 120);
-  tcase_add_test(t, test_late_rtu);
-  tcase_add_test(t, test_late_tcp);
-  tcase_add_loop_test(t, test_own_framing, 0, 2);
-  tcase_add_test(t, test_other_checksum);
-  tcase_add_test(t, test_old_answers);
-  tcase_add_test(t, test_baud);
-  tcase_add_test(t, test_line_keys);
-  tcase_add_test(t, test_no_delay);
-  tcase_add_test(t, test_unplugged);
-  tcase_add_test(t, test_byte_timeout);
-  tcase_add_test(t, test_descriptor);
-  tcase_add_test(t, test_floats);
-  tcase_add_test(t, test_exceptions);
-  tcase_add_test(t, test_damaged);
-  tcase_add_test(t, test_reset);
-  tcase_add_test(t, test_sequences);
-  tcase_add_test(t, test_step_timeout);
-  tcase_add_test(t, test_other_questions);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -51,7 +51,7 @@ static void refused(const char *was, const char *now, const char *why) { refused
 
 /* ---- what comes with the programs ---- */
 
-START_TEST(test_plant) {
+TEST(test_plant) {
   read_map("apps/config/plant.map");
   ck_assert_msg(try(text) == ETHD_OK, "%s", message);
   const ethd__servo_register *torque = named("torque1"), *position = named("position2");
@@ -66,12 +66,11 @@ START_TEST(test_plant) {
   /* a joint turn is 4000 x 9.80 counts */
   ck_assert_double_eq_tol(ethd__servo_joint(position, 39200), 6.283185307179586, 1e-12);
 }
-END_TEST
 
 /* The SVD48V at 500 kBd, by hand: a byte has 10 bits, a silence 3.5 bytes of 11. Writing two words is 13 + 8 bytes,
    reading n of them 8 + 5 + 2 n; currents come every second time, running bits and error words in turn between them, the
    voltage every 50th. */
-START_TEST(test_wire) {
+TEST(test_wire) {
   const double byte = 10 / 500e3, silence = 3.5 * 11 / 500e3;
   read_map("apps/config/svd48v.map");
   ck_assert_msg(try(text) == ETHD_OK, "%s", message);
@@ -91,10 +90,9 @@ START_TEST(test_wire) {
   /* the map's divisor holds what its wire takes, with turnarounds of 0.2 ms */
   ck_assert_uint_ge(map.divisor, ethd__servo_divisor_for(w.most + 7 * 2e-4, 1e-3));
 }
-END_TEST
 
 /* Rows 12 and 13 are watched unless a map says otherwise, and then it is said. */
-START_TEST(test_watched) {
+TEST(test_watched) {
   static const struct {
     const char *was, *now, *says;
   } all[] = {{"counts = 4000", "counts = 4000\nfreeze_torque = 4", "freeze_torque is out of reach"},
@@ -111,14 +109,13 @@ START_TEST(test_watched) {
     ck_assert_ptr_null(ethd__servo_risk(&map, 1));
   }
 }
-END_TEST
 
 /* Roboteq's rule (GDC3660E Modbus data sheet, 2018, p. 10), which has 0x2106, index 1 -> 0x20C1 as its example. */
 static uint32_t roboteq(uint32_t id, uint32_t index) { return (id << 5 | index) & 0xFFFF; }
 
 /* CANopen ids of Roboteq's object dictionary: user manual V1.8 p. 181 to 184, V2.0 p. 212, 223, CANbus manual V2.0 p.
    35. */
-START_TEST(test_roboteq) {
+TEST(test_roboteq) {
   static const struct {
     const char *name;
     uint32_t id, index, address; /* address: as a driver that isn't ours has it */
@@ -142,10 +139,9 @@ START_TEST(test_roboteq) {
   }
   ck_assert_uint_eq(ethd__servo_unconfirmed(&map), 0);
 }
-END_TEST
 
 /* The SVD48V's addresses as its manual (V2.01) has them, p. 15 and 23 to 26. */
-START_TEST(test_svd48v) {
+TEST(test_svd48v) {
   static const struct {
     const char *name;
     uint32_t address;
@@ -171,9 +167,8 @@ START_TEST(test_svd48v) {
   ck_assert_str_eq(map.registers[first->at].name, "input");
   ck_assert_double_eq(first->value, 1);
 }
-END_TEST
 
-START_TEST(test_makers) {
+TEST(test_makers) {
   read_map("apps/config/svd48v.map");
   ck_assert_msg(try(text) == ETHD_OK, "%s", message);
   ck_assert_uint_eq(named("torque1")->address, 0x5308);
@@ -195,11 +190,10 @@ START_TEST(test_makers) {
   /* 20 ms between messages: no exchange ends within the 25 ms that one may take */
   ck_assert_double_ge(ethd__servo_wire_of(&map, (double)NAN).usual, 0.04);
 }
-END_TEST
 
 /* ---- refusals ---- */
 
-START_TEST(test_bus_refused) {
+TEST(test_bus_refused) {
   read_map("apps/config/plant.map");
   refused("transport = tcp", "transport = can", ":4: bus.transport: found \"can\", tcp|rtu is allowed");
   refused("transport = tcp", "", ":3: bus.transport is missing");
@@ -231,9 +225,8 @@ START_TEST(test_bus_refused) {
   refused("time = 0.05", "", "watchdog.time is missing");
   refused("time = 0.05", "tim = 0.05", "watchdog.tim: a map has no such key");
 }
-END_TEST
 
-START_TEST(test_register_refused) {
+TEST(test_register_refused) {
   read_map("apps/config/plant.map");
   refused_behind("[register torque1]", "min = -0.2\n", "",
                  "register torque1.min: is missing: a command needs its limits");
@@ -298,10 +291,9 @@ START_TEST(test_register_refused) {
   refused_behind("[register seen2]", "type = i16", "type = i16 ; x\nfoo = 1",
                  "register seen2.foo: a map has no such key");
 }
-END_TEST
 
 /* Without its position a torque is none, and likewise. */
-START_TEST(test_roles_refused) {
+TEST(test_roles_refused) {
   static const char *const lean =
       "[bus]\ntransport = tcp\nport = a:1\n[register torque1]\ndirection = write\naddress = 0\ntype = i16\nunit = Nm\n"
       "min = -1\nmax = 1\n";
@@ -319,10 +311,9 @@ START_TEST(test_roles_refused) {
   ck_assert_int_lt(try("[bus]\ntransport = tcp\nport = a:1\n"), 0);
   ck_assert_ptr_nonnull(strstr(message, "a torque1 or a torque2 is missing"));
 }
-END_TEST
 
 /* Several units on one bus: equal addresses don't overlap, all else is as within one. */
-START_TEST(test_units_refused) {
+TEST(test_units_refused) {
   const char *torque2 = "[register torque2]";
   read_map("tests/servo/two_units.map");
   ck_assert_msg(try(text) == ETHD_OK, "%s", message);
@@ -342,10 +333,9 @@ START_TEST(test_units_refused) {
                  "register control2.address: [register control] of line 16 writes there too");
   refused("[register counter]", "[register counter3]", "counter3.echo: only torque1, torque2 and counters");
 }
-END_TEST
 
 /* What the whole map must have in each unit. */
-START_TEST(test_units_roles_refused) {
+TEST(test_units_roles_refused) {
   static const char bus[] = "[bus]\ntransport = tcp\nport = a:1\n";
   static const char torque[] = "[register torque%d]\ndirection = write\naddress = 0\ntype = i16\nunit = Nm\nmin = -1\n"
                                "max = 1\nbus_unit = %d\n[register position%d]\ndirection = read\naddress = %d\n"
@@ -380,9 +370,8 @@ START_TEST(test_units_roles_refused) {
   ck_assert_int_lt(try(text), 0);
   ck_assert_ptr_nonnull(strstr(message, "register c.bus_unit: found \"0\", 1 to 247: on a serial line 0 is for all"));
 }
-END_TEST
 
-START_TEST(test_steps_refused) {
+TEST(test_steps_refused) {
   read_map("apps/config/plant.map");
   char why[64];
   const char *step = "step1 = write control 2";
@@ -408,11 +397,10 @@ START_TEST(test_steps_refused) {
   refused(wait, "step2 = wait status 1 0 1 1", "wait NAME MASK BITS SECONDS");
   refused(wait, "", "step2 comes here");
 }
-END_TEST
 
 /* ---- words ---- */
 
-START_TEST(test_words) {
+TEST(test_words) {
   static const struct {
     int32_t type, order;
     double raw;
@@ -435,10 +423,9 @@ START_TEST(test_words) {
     ck_assert_double_eq(ethd__servo_unpack(&r, words), known[i].raw);
   }
 }
-END_TEST
 
 /* Back is what went, for every type and order; what doesn't fit is cut, what isn't a number is 0. */
-START_TEST(test_words_back) {
+TEST(test_words_back) {
   for (uint64_t i = 0; i < 20000; i++) {
     const ethd__servo_register r = {.type = (int32_t)(draw_bits(3 * i) % 5),
                                     .order = (int32_t)(draw_bits(3 * i + 1) % 2)};
@@ -455,10 +442,9 @@ START_TEST(test_words_back) {
     ck_assert_double_eq(ethd__servo_unpack(&r, words), 0);
   }
 }
-END_TEST
 
 /* Whatever torque is asked for, what goes out is within the limits, the right way round. */
-START_TEST(test_limits) {
+TEST(test_limits) {
   read_map("apps/config/svd48v.map");
   ck_assert_int_eq(try(text), ETHD_OK);
   ethd__servo_register r = *named("torque1");
@@ -473,7 +459,6 @@ START_TEST(test_limits) {
   r.max = 0.17; /* rounding doesn't pass a limit either */
   ck_assert_double_eq(ethd__servo_raw(&r, -5), 1);
 }
-END_TEST
 
 /* Less than a count remains: never more than was asked for, in its direction, and a torque of the words stays itself. */
 static void rounds(const ethd__servo_register *r, double joint) {
@@ -498,7 +483,7 @@ static void rounds_all(const ethd__servo_register *r, uint64_t stream) {
   }
 }
 
-START_TEST(test_rounds_towards_zero) {
+TEST(test_rounds_towards_zero) {
   static const char *const maps[] = {"apps/config/svd48v.map", "apps/config/roboteq.map", "apps/config/plant.map",
                                      "apps/config/akd.map"};
   for (uint64_t k = 0; k < sizeof maps / sizeof *maps; k++) {
@@ -532,11 +517,10 @@ START_TEST(test_rounds_towards_zero) {
   ck_assert_double_eq(ethd__servo_raw(named("torque1"), -0.12), -2);
   ck_assert_double_eq(ethd__servo_raw(named("torque1"), 1.5 * 0.04668), 1);
 }
-END_TEST
 
 /* ---- no maps ---- */
 
-START_TEST(test_any_text) {
+TEST(test_any_text) {
   static const char *const words[] = {"[register torque1]",
                                       "\n",
                                       "=",
@@ -569,30 +553,4 @@ START_TEST(test_any_text) {
     }
   }
   ck_assert_uint_gt(passed, count / 100);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("servo_map");
-  TCase *t = tcase_create("servo_map");
-  tcase_set_timeout(t, 300);
-  tcase_add_test(t, test_plant);
-  tcase_add_test(t, test_makers);
-  tcase_add_test(t, test_wire);
-  tcase_add_test(t, test_watched);
-  tcase_add_test(t, test_roboteq);
-  tcase_add_test(t, test_svd48v);
-  tcase_add_test(t, test_bus_refused);
-  tcase_add_test(t, test_register_refused);
-  tcase_add_test(t, test_roles_refused);
-  tcase_add_test(t, test_units_refused);
-  tcase_add_test(t, test_units_roles_refused);
-  tcase_add_test(t, test_steps_refused);
-  tcase_add_test(t, test_words);
-  tcase_add_test(t, test_words_back);
-  tcase_add_test(t, test_limits);
-  tcase_add_test(t, test_rounds_towards_zero);
-  tcase_add_test(t, test_any_text);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

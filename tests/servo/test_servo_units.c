@@ -64,7 +64,7 @@ static void end(void) {
 }
 
 /* Equal addresses, and each unit has its own torque, angle and counter; a question a unit when both halves are one. */
-START_TEST(test_each_has_its_own) {
+TEST_LOOP(test_each_has_its_own, 0, 4) {
   begin(_i & 1, _i & 2 ? ETHD__SERVO_COMBINED : ETHD__SERVO_SEPARATE);
   enable();
   drive.words[MOCK_POSITION1 + 1] = 100;
@@ -84,10 +84,9 @@ START_TEST(test_each_has_its_own) {
   ck_assert(drive.words[MOCK_STATUS] == 0 && drive.second[MOCK_STATUS] == 0);
   end();
 }
-END_TEST
 
 /* An answer from another station is none, over tcp, too, where libmodbus wouldn't look. */
-START_TEST(test_another_station) {
+TEST_LOOP(test_another_station, 0, 2) {
   begin(_i, ETHD__SERVO_SEPARATE);
   enable();
   drive.astray = 1;
@@ -97,10 +96,9 @@ START_TEST(test_another_station) {
   ck_assert_msg(turn(0, 0) == ETHD_OK, "%s", link_.message);
   end();
 }
-END_TEST
 
 /* Over tcp an answer has its question's number. */
-START_TEST(test_another_number) {
+TEST(test_another_number) {
   begin(0, ETHD__SERVO_SEPARATE);
   reach(ETHD__SERVO_IDENTIFIED, 0, 0);
   uint16_t before = link_.bus.number, got;
@@ -119,7 +117,6 @@ START_TEST(test_another_number) {
   ck_assert_int_ne(ethd__servo_frame_take(&map, &question, answer, sizeof answer, &got), 0);
   end();
 }
-END_TEST
 
 static _Atomic int reads;
 
@@ -131,7 +128,7 @@ static mock_act old_of_the_second(void *user, uint64_t n, int function) {
 }
 
 /* The torque stays the same, so that only the counter of its unit shows it. */
-START_TEST(test_old_answer_of_the_second) {
+TEST(test_old_answer_of_the_second) {
   begin(1, ETHD__SERVO_SEPARATE);
   enable();
   reads = 0;
@@ -141,7 +138,6 @@ START_TEST(test_old_answer_of_the_second) {
   ck_assert_uint_eq(link_.counts.stale, 1);
   end();
 }
-END_TEST
 
 /* ---- a unit that vanishes ---- */
 
@@ -173,7 +169,7 @@ static void tick(void) {
 
 /* Whichever of them is gone: 5 ms later the feedback is too old, and the next exchange takes the other's torque, too.
    Then it is disabled. */
-START_TEST(test_one_vanishes) {
+TEST_LOOP(test_one_vanishes, 0, 2) {
   int gone = 1 + _i, until = 0;
   mock_start(&drive, 0);
   ck_assert_msg(open_pair() == ETHD_OK, "%s", message);
@@ -203,7 +199,6 @@ START_TEST(test_one_vanishes) {
   servo->close(device);
   mock_stop(&drive);
 }
-END_TEST
 
 /* One answer that is missing is asked for again, and ends nothing. */
 static mock_act drop_one(void *user, uint64_t n, int function) {
@@ -211,7 +206,7 @@ static mock_act drop_one(void *user, uint64_t n, int function) {
   return (mock_act){n == *(uint64_t *)user ? MOCK_DROP : MOCK_ANSWER, 0, 0};
 }
 
-START_TEST(test_one_missing) {
+TEST(test_one_missing) {
   mock_start(&drive, 0);
   ck_assert_msg(open_pair() == ETHD_OK, "%s", message);
   now = 0;
@@ -231,7 +226,6 @@ START_TEST(test_one_missing) {
   servo->close(device);
   mock_stop(&drive);
 }
-END_TEST
 
 static _Atomic uint64_t zeroed;
 
@@ -244,7 +238,7 @@ static mock_act note_zero(void *user, uint64_t n, int function) {
 
 /* The first unit is gone and the program is silent: the guardian doesn't try it five times before the second gets
    zero. */
-START_TEST(test_guardian) {
+TEST_LOOP(test_guardian, 0, 2) {
   static ethd__servo_plan plan;
   static ethd__guardian guardian;
   static ethd__guardian_page page;
@@ -271,7 +265,6 @@ START_TEST(test_guardian) {
   ck_assert(drive.words[MOCK_TORQUE1] == 500);
   mock_stop(&drive);
 }
-END_TEST
 
 /* ---- a device whose joint nobody measures ---- */
 
@@ -285,7 +278,7 @@ static ethd_status open_one(const char *ids, const char *path, const ethd_driver
                     : ethd_device_open(ids, NULL, &def, opened, &device, message);
 }
 
-START_TEST(test_joint_unmeasured) {
+TEST(test_joint_unmeasured) {
   static const char one[] = "[bus]\ntransport = tcp\nport = 127.0.0.1:1\n"
                             "[register torque1]\ndirection = write\naddress = 1\ntype = i16\nunit = Nm\nscale = 1e-4\n"
                             "min = -0.2\nmax = 0.2\n"
@@ -306,21 +299,4 @@ START_TEST(test_joint_unmeasured) {
   ck_assert_msg(open_one("servo, counter", path, &opened) == ETHD_OK, "%s", message);
   opened->close(device);
   remove(path);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("servo_units");
-  TCase *t = tcase_create("servo_units");
-  tcase_set_timeout(t, 120);
-  tcase_add_loop_test(t, test_each_has_its_own, 0, 4);
-  tcase_add_loop_test(t, test_another_station, 0, 2);
-  tcase_add_test(t, test_another_number);
-  tcase_add_test(t, test_old_answer_of_the_second);
-  tcase_add_loop_test(t, test_one_vanishes, 0, 2);
-  tcase_add_test(t, test_one_missing);
-  tcase_add_loop_test(t, test_guardian, 0, 2);
-  tcase_add_test(t, test_joint_unmeasured);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -121,7 +121,7 @@ static void begin_and_hang(rig *r, ethd_tracking_law *law, ethd_loop **loop, dou
 }
 
 /* Without any limit; only a law can be seen then, and with a gap of 5 ms. */
-START_TEST(test_hangs) {
+TEST_LOOP(test_hangs, 0, 2 * PLACES) {
   static rig r;
   static ethd_tracking_law law;
   static ethd_loop *loop;
@@ -160,10 +160,9 @@ START_TEST(test_hangs) {
     ck_assert_int_eq(atomic_load(&last_safe), 1);
   }
 }
-END_TEST
 
 /* The clean end, with the thread that watches now always there, is as quick as ever. */
-START_TEST(test_ends) {
+TEST(test_ends) {
   static rig r;
   static ethd_tracking_law law;
   static ethd_loop *loop;
@@ -176,15 +175,4 @@ START_TEST(test_ends) {
   ck_assert_int_eq(atomic_load(&safe), 1);
   ethd_loop_destroy(loop);
   rig_close(&r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("loop hang");
-  TCase *t = tcase_create("loop hang");
-  tcase_add_loop_test(t, test_hangs, 0, 2 * PLACES);
-  tcase_add_test(t, test_ends);
-  tcase_set_timeout(t, 60);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

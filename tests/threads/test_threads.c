@@ -108,7 +108,7 @@ static ethd_scene *scene_of(int n) {
   return rig_scene(text);
 }
 
-START_TEST(test_post_poll_clear_while_stepping) {
+TEST(test_post_poll_clear_while_stepping) {
   static ledger l;
   static rig r;
   pthread_t thread;
@@ -153,14 +153,4 @@ START_TEST(test_post_poll_clear_while_stepping) {
   ck_assert_uint_le(c.faults[ETHD_FAULT_INPUT], (uint64_t)l.faults + c.events_dropped);
   ethd_scene_destroy(l.scenes[POSTS]);
   rig_close(&r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("threads");
-  TCase *t = tcase_create("threads");
-  tcase_add_test(t, test_post_poll_clear_while_stepping);
-  tcase_set_timeout(t, 60);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

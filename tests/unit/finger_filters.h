@@ -50,12 +50,4 @@ static inline void ramp(const ethd_filter *f, ethd_filter_state *s, double b, do
   }
 }
 
-static inline int run_suite(Suite *suite) {
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
-}
-
 #endif

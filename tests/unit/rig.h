@@ -2,10 +2,10 @@
 #ifndef ETHD_TESTS_RIG_H
 #define ETHD_TESTS_RIG_H
 
-#include <check.h>
 #include <stdint.h>
 
 #include "ethd/control.h"
+#include "unit/suite.h"
 
 /* The paper's wall on the left: d_re = x - 0.25 with the default ring. */
 #define RIG_WALL "halfplane -1 0 -0.238\n"

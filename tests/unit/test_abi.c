@@ -234,7 +234,7 @@ _Static_assert(ETHD_TRANSPARENT == 0 && ETHD_BRAKING == 1 && ETHD_VO == 2, "stat
 _Static_assert(sizeof(ethd_sense) == 8 * (0 ETHD_SENSE_FIELDS(COUNT)), "sense");
 _Static_assert(sizeof(ethd_trace) == sizeof(ethd_sense) + 8 * (0 ETHD_TRACE_FIELDS(COUNT)), "trace");
 
-START_TEST(test_every_law) {
+TEST(test_every_law) {
   static const struct {
     const char *id;
     int kind;
@@ -253,9 +253,8 @@ START_TEST(test_every_law) {
     ck_assert_int_eq(ethd_params_check(ethd_laws[i]->params, ethd_laws[i]->param_count, p, &error), ETHD_OK);
   }
 }
-END_TEST
 
-START_TEST(test_every_method) {
+TEST(test_every_method) {
   ethd_error error;
   for (int i = 0; i < ETHD_VELOCITY_COUNT; i++)
     ck_assert_int_eq(
@@ -268,11 +267,10 @@ START_TEST(test_every_method) {
     ck_assert_int_eq(ethd_params_check_table(ethd_fit_methods[i].params, ethd_fit_methods[i].param_count, &error),
                      ETHD_OK);
 }
-END_TEST
 
 /* A law of an older header is shorter and runs; one that stops short of step is refused, and one of a newer header,
    which may count on what this library doesn't give. */
-START_TEST(test_sizes_of_laws) {
+TEST(test_sizes_of_laws) {
   ethd_transition_law law = ethd_transition_smooth;
   law.law.size = ETHD_TRANSITION_LAW_MIN;
   ck_assert_int_eq(ethd_law_check(&law.law, NULL), ETHD_OK);
@@ -283,9 +281,8 @@ START_TEST(test_sizes_of_laws) {
   law.law.size = 0;
   ck_assert_int_eq(ethd_law_check(&law.law, NULL), ETHD_E_SIZE);
 }
-END_TEST
 
-START_TEST(test_law_check) {
+TEST(test_law_check) {
   static const char *const bad_ids[] = {NULL, "", "Smooth", "a b", "a_b", "x1234567890123456789012345678901"};
   ethd_error error;
   ck_assert_int_eq(ethd_law_check(NULL, &error), ETHD_E_ARGUMENT);
@@ -316,7 +313,6 @@ START_TEST(test_law_check) {
   law.law.abi = 1; /* said before all else: nothing behind it can be trusted */
   ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_ABI);
 }
-END_TEST
 
 /* The whole block of 512 bytes is a law's own, zeroed before reset, and nobody else's. */
 static ethd_status greedy_step(const double *p, void *state, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
@@ -345,7 +341,7 @@ static void greedy_reset(const double *p, void *state) ETHD_RT {
    NULL}
 static const ethd_transition_law greedy = GREEDY, greedy_too = GREEDY;
 
-START_TEST(test_state_blocks) {
+TEST(test_state_blocks) {
   rig r;
   /* one object only: its number is 0 in a block's first tick, when block[63] is 0 too */
   rig_open(&r, "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\n");
@@ -362,10 +358,9 @@ START_TEST(test_state_blocks) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* The version's text and its numbers say the same. */
-START_TEST(test_version) {
+TEST(test_version) {
   int major, minor, patch, end = 0;
   ck_assert_int_eq(sscanf(ETHD_VERSION, "%d.%d.%d%n", &major, &minor, &patch, &end), 3);
   ck_assert_uint_eq(end, strlen(ETHD_VERSION));
@@ -375,21 +370,7 @@ START_TEST(test_version) {
   ck_assert_int_eq(10000 * major + 100 * minor + patch, ETHD_VERSION_NUMBER);
   ck_assert(minor < 100 && patch < 100); /* else the number doesn't grow with the version */
 }
-END_TEST
 
 #if ETHD_VERSION_NUMBER < 100
 #error "the preprocessor compares versions"
 #endif
-
-int main(void) {
-  Suite *suite = suite_create("abi");
-  TCase *t = tcase_create("abi");
-  tcase_add_test(t, test_every_law);
-  tcase_add_test(t, test_every_method);
-  tcase_add_test(t, test_sizes_of_laws);
-  tcase_add_test(t, test_law_check);
-  tcase_add_test(t, test_state_blocks);
-  tcase_add_test(t, test_version);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
-}

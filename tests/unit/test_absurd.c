@@ -23,7 +23,7 @@ static ethd_status tick(rig *r, double q) {
 
 /* A torque that was taken away at once rises from zero at the rate's pace, also where nothing latches: 100 Nm/s over
    the two periods since the last torque. */
-START_TEST(test_rises_from_zero) {
+TEST(test_rises_from_zero) {
   rig r;
   begin(&r, ETHD_VELOCITY_DIFFERENCE, 100);
   mood.tracking = MOODY_BAD;
@@ -38,14 +38,13 @@ START_TEST(test_rises_from_zero) {
   ck_assert_double_eq_tol(r.command.torque[1], 0.3, 1e-12);
   rig_close(&r);
 }
-END_TEST
 
 /* An enormous torque, up to the largest double, where no limit is set: the estimator that takes it for the arm's
    acceleration is itself again a few ticks later. */
 static const double enormous[] = {1e100, 1e306, 1.7e308};
 enum { ENORMOUS = sizeof enormous / sizeof *enormous };
 
-START_TEST(test_estimator_heals) {
+TEST_LOOP(test_estimator_heals, 0, ETHD_VELOCITY_COUNT *ENORMOUS) {
   const double torque = enormous[_i % ENORMOUS];
   rig r;
   begin(&r, (ethd_velocity_method)(_i / ENORMOUS), (double)INFINITY);
@@ -62,14 +61,4 @@ START_TEST(test_estimator_heals) {
   ck_assert_double_eq_tol(r.trace.qd[1], 0, 1e-6);
   ck_assert(isfinite(r.command.torque[0]) && fabs(r.command.torque[1]) < 1);
   rig_close(&r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("absurd");
-  TCase *t = tcase_create("absurd");
-  tcase_add_test(t, test_rises_from_zero);
-  tcase_add_loop_test(t, test_estimator_heals, 0, ETHD_VELOCITY_COUNT * ENORMOUS);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -1,12 +1,12 @@
 /* Kinematics against long double and central differences, the inverse against its definition. */
 #include "ethd/arm.h"
 
-#include <check.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "draw.h"
 #include "ethd/control.h"
+#include "unit/suite.h"
 
 enum { POINTS = 20000 };
 
@@ -34,7 +34,7 @@ static void with_angle(const ethd_arm *arm, double q1, double th, double q[2]) {
 
 static double largest(const double m[4]) { return fmax(fmax(fabs(m[0]), fabs(m[1])), fmax(fabs(m[2]), fabs(m[3]))); }
 
-START_TEST(test_forward_and_jacobian) {
+TEST_LOOP(test_forward_and_jacobian, 0, ARMS) {
   const ethd_arm *arm = &arms[_i];
   const long double h = 1e-6L;
   for (uint64_t i = 0; i < POINTS; i++) {
@@ -53,10 +53,9 @@ START_TEST(test_forward_and_jacobian) {
     }
   }
 }
-END_TEST
 
 /* To the last bit adj(J) / det(J) where |sin| allows it. */
-START_TEST(test_exact_inverse) {
+TEST_LOOP(test_exact_inverse, 0, ARMS) {
   const ethd_arm *arm = &arms[_i];
   int seen = 0;
   for (uint64_t i = 0; i < POINTS; i++) {
@@ -72,10 +71,9 @@ START_TEST(test_exact_inverse) {
   }
   ck_assert_int_gt(seen, POINTS * 9 / 10);
 }
-END_TEST
 
 /* The stiffness K_x = J^-T 40 J^-1 in x at absolute link angles 90 and 0 deg. */
-START_TEST(test_stiffness_of_both_mechanisms) {
+TEST(test_stiffness_of_both_mechanisms) {
   const double quarter = 1.57079632679489661923;
   const double expected[2] = {640, 1280};
   for (int m = 0; m < 2; m++) {
@@ -90,10 +88,9 @@ START_TEST(test_stiffness_of_both_mechanisms) {
     ck_assert_double_eq_tol(pose.x.y, 0.25, 1e-15);
   }
 }
-END_TEST
 
 /* J^T (J J^T + lambda^2 I)^-1 written out, with the header's lambda. */
-START_TEST(test_damped_inverse) {
+TEST_LOOP(test_damped_inverse, 0, ARMS) {
   const ethd_arm *arm = &arms[_i];
   for (uint64_t i = 0; i < POINTS; i++) {
     double q[2], th = draw(3 * i, -1, 1) * ETHD_ARM_SINGULAR + (draw_bits(3 * i + 1) & 1 ? 3.14159265358979324 : 0);
@@ -110,11 +107,10 @@ START_TEST(test_damped_inverse) {
       ck_assert_double_le(fabs((double)(pose.j_inv[k] - expected[k])), 1e-9 * largest(pose.j_inv));
   }
 }
-END_TEST
 
 /* Through both singularities in fine steps: no jump, and never much above the exact inverse's largest.
  */
-START_TEST(test_continuous_and_bounded) {
+TEST_LOOP(test_continuous_and_bounded, 0, ARMS) {
   const ethd_arm *arm = &arms[_i];
   const double step = ETHD_ARM_SINGULAR / 20000;
   for (int folded = 0; folded < 2; folded++) {
@@ -135,9 +131,8 @@ START_TEST(test_continuous_and_bounded) {
     ck_assert_double_ge(top, edge);
   }
 }
-END_TEST
 
-START_TEST(test_threshold_is_smooth) {
+TEST_LOOP(test_threshold_is_smooth, 0, ARMS) {
   const ethd_arm *arm = &arms[_i];
   double q[2], at = asin(ETHD_ARM_SINGULAR);
   for (int i = 1; i < 10; i++) {
@@ -151,9 +146,8 @@ START_TEST(test_threshold_is_smooth) {
       ck_assert_double_le(fabs(inside.j_inv[k] - outside.j_inv[k]), 4 * delta / at * largest(outside.j_inv));
   }
 }
-END_TEST
 
-START_TEST(test_singular) {
+TEST_LOOP(test_singular, 0, ARMS) {
   double q[2];
   ethd_pose pose;
   with_angle(&arms[_i], 0, 0, q);
@@ -165,9 +159,8 @@ START_TEST(test_singular) {
   ethd_vec y = ethd_mat_mul(pose.j, ethd_mat_mul(pose.j_inv, (ethd_vec){0, 1}));
   ck_assert_double_eq_tol(y.y, 1, 1e-3);
 }
-END_TEST
 
-START_TEST(test_angles_there_and_back) {
+TEST_LOOP(test_angles_there_and_back, 0, ARMS) {
   const ethd_arm *arm = &arms[_i];
   double inner, outer;
   ethd_arm_reach(arm, &inner, &outer);
@@ -188,9 +181,8 @@ START_TEST(test_angles_there_and_back) {
     ck_assert_double_le(ethd_vec_norm(ethd_vec_sub(pose.x, x)), 2e-15);
   }
 }
-END_TEST
 
-START_TEST(test_angles_at_the_ends) {
+TEST(test_angles_at_the_ends) {
   const double pi = 3.14159265358979324;
   ethd_arm arm = {ETHD_ARM_PARALLEL, 0.25, 0.25};
   double q[2] = {5, 6};
@@ -204,9 +196,8 @@ START_TEST(test_angles_at_the_ends) {
   ck_assert_double_eq_tol(q[0], pi / 2, 1e-15);
   ck_assert_double_eq_tol(q[1], 0, 1e-15);
 }
-END_TEST
 
-START_TEST(test_unreachable) {
+TEST(test_unreachable) {
   const ethd_vec far[] = {{0.5000001, 0}, {0, 1e300}, {NAN, 0}, {0, INFINITY}, {0.1, -0.05}};
   ethd_arm arm = {ETHD_ARM_SERIAL, 0.32, 0.18};
   for (size_t i = 0; i < sizeof far / sizeof *far; i++) {
@@ -215,9 +206,8 @@ START_TEST(test_unreachable) {
     ck_assert(q[0] == 5 && q[1] == 6);
   }
 }
-END_TEST
 
-START_TEST(test_check) {
+TEST(test_check) {
   ethd_error error;
   for (int i = 0; i < ARMS; i++) ck_assert_int_eq(ethd_arm_check(&arms[i], &error), ETHD_OK);
   const double bad[] = {0, -0.25, 1e-4, 101, INFINITY};
@@ -231,10 +221,9 @@ START_TEST(test_check) {
   ck_assert_int_eq(ethd_arm_check(&(ethd_arm){(ethd_mechanism)2, 0.25, 0.25}, &error), ETHD_E_RANGE);
   ck_assert(error.found == 2 && error.min == 0 && error.max == 1);
 }
-END_TEST
 
 /* The words of the configuration are the arms' names, in their order. */
-START_TEST(test_names) {
+TEST(test_names) {
   ethd_setup setup = ethd_setup_default();
   ethd_setup_key key;
   uint32_t i = 0;
@@ -245,10 +234,9 @@ START_TEST(test_names) {
   ck_assert_str_eq(ethd_arm_name(ETHD_ARM_SERIAL), "serial");
   ck_assert_str_eq(ethd_arm_name((ethd_mechanism)2), "");
 }
-END_TEST
 
 /* What moves it: what one source doesn't know, the next one may. */
-START_TEST(test_dynamics) {
+TEST(test_dynamics) {
   ethd_dynamics none = ethd_dynamics_unknown(), some = {{NAN, 0.3}, 0.4, NAN, 1e-4}, all = {{0.1, 0.2}, 0.5, 0.6, 2e-4};
   ck_assert(isnan(none.mass[0]) && isnan(none.mass[1]) && isnan(none.friction) && isnan(none.viscous) &&
             isnan(none.delay));
@@ -258,29 +246,4 @@ START_TEST(test_dynamics) {
   ck_assert(isnan(d.mass[0]) && isnan(d.delay));
   d = ethd_dynamics_known(&all, &none);
   ck_assert(memcmp(&d, &all, sizeof d) == 0);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("arm");
-  TCase *tc = tcase_create("kinematics");
-  tcase_add_loop_test(tc, test_forward_and_jacobian, 0, ARMS);
-  tcase_add_loop_test(tc, test_exact_inverse, 0, ARMS);
-  tcase_add_test(tc, test_stiffness_of_both_mechanisms);
-  tcase_add_loop_test(tc, test_damped_inverse, 0, ARMS);
-  tcase_add_loop_test(tc, test_continuous_and_bounded, 0, ARMS);
-  tcase_add_loop_test(tc, test_threshold_is_smooth, 0, ARMS);
-  tcase_add_loop_test(tc, test_singular, 0, ARMS);
-  tcase_add_loop_test(tc, test_angles_there_and_back, 0, ARMS);
-  tcase_add_test(tc, test_angles_at_the_ends);
-  tcase_add_test(tc, test_unreachable);
-  tcase_add_test(tc, test_check);
-  tcase_add_test(tc, test_names);
-  tcase_add_test(tc, test_dynamics);
-  suite_add_tcase(suite, tc);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -42,7 +42,7 @@ static motion resting(double x) {
 }
 
 /* F = (K_e d - B_e v) n with v = n.(V_r - V_s): 1 mm deep, met at 0.1 m/s: 2.5 + 4.5 N. */
-START_TEST(test_moving_wall_pushes) {
+TEST(test_moving_wall_pushes) {
   rig r;
   open_with_body(&r, NULL, FRAME_WALL);
   motion m = resting(0.25);
@@ -57,10 +57,9 @@ START_TEST(test_moving_wall_pushes) {
   ck_assert_double_eq_tol(r.trace.fe[0], 2.5, 1e-9);
   close_with_body(&r);
 }
-END_TEST
 
 /* A wall that turns about a point 0.2 m below the ring at 2 rad/s meets it at 0.4 m/s. */
-START_TEST(test_turning_wall) {
+TEST(test_turning_wall) {
   rig r;
   open_with_body(&r, NULL, FRAME_WALL);
   motion m = resting(0.25);
@@ -70,7 +69,6 @@ START_TEST(test_turning_wall) {
   ck_assert_double_eq_tol(r.trace.v_n, 0.4, NOISE);
   close_with_body(&r);
 }
-END_TEST
 
 static double draw(uint64_t *seed) {
   *seed = *seed * 6364136223846793005u + 1442695040888963407u;
@@ -78,7 +76,7 @@ static double draw(uint64_t *seed) {
 }
 
 /* A body at a pose is the same as a scene drawn there. */
-START_TEST(test_same_as_drawn_there) {
+TEST(test_same_as_drawn_there) {
   uint64_t seed = 1;
   int touched = 0;
   for (int i = 0; i < 300; i++) {
@@ -107,9 +105,8 @@ START_TEST(test_same_as_drawn_there) {
   }
   ck_assert_int_gt(touched, 50);
 }
-END_TEST
 
-START_TEST(test_pose_holds) {
+TEST(test_pose_holds) {
   rig r;
   open_with_body(&r, NULL, FRAME_WALL);
   motion m = resting(0.25);
@@ -128,10 +125,9 @@ START_TEST(test_pose_holds) {
   ck_assert_int_eq(rig_try(&r, &s), ETHD_E_NOT_FINITE);
   close_with_body(&r);
 }
-END_TEST
 
 /* A body that comes to a resting ring is seen in time, though the scene was skipped before. */
-START_TEST(test_body_comes) {
+TEST(test_body_comes) {
   rig r;
   open_with_body(&r, RIG_WALL, FRAME_WALL);
   motion m = resting(0.30);
@@ -152,9 +148,8 @@ START_TEST(test_body_comes) {
   }
   close_with_body(&r);
 }
-END_TEST
 
-START_TEST(test_released) {
+TEST(test_released) {
   rig r;
   rig_open(&r, RIG_WALL);
   ethd_scene *a = rig_scene(FRAME_WALL), *b = rig_scene(FRAME_WALL);
@@ -176,12 +171,11 @@ START_TEST(test_released) {
   rig_close(&r);
   ethd_scene_destroy(a);
 }
-END_TEST
 
 /* ---- skipped ---- */
 
 /* A wall 0.1 m away is asked for a handful of times, and never missed. */
-START_TEST(test_skip) {
+TEST(test_skip) {
   rig r;
   int queries = 0;
   rig_open(&r, RIG_WALL);
@@ -197,10 +191,9 @@ START_TEST(test_skip) {
   ck_assert_int_lt(queries, 30);
   rig_close(&r);
 }
-END_TEST
 
 /* Far from everything no memory of the scene is touched: it can't even be read. */
-START_TEST(test_unreadable_scene) {
+TEST(test_unreadable_scene) {
   rig r;
   enum { CIRCLES = 20000 };
   char *text = malloc(CIRCLES * 40), *end = text;
@@ -225,12 +218,11 @@ START_TEST(test_unreadable_scene) {
   ck_assert_int_eq(mprotect((void *)first, last - first, PROT_READ | PROT_WRITE), 0);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- one surface, one push ---- */
 
 /* Inside of a circle drawn with 180 edges the ring is pushed once, wherever it presses, and n turns with it. */
-START_TEST(test_fine_curve_pushes_once) {
+TEST(test_fine_curve_pushes_once) {
   enum { EDGES = 180 };
   char text[EDGES * 60 + 60], *end = text + sprintf(text, "polyline");
   for (int i = 0; i <= EDGES; i++)
@@ -255,10 +247,9 @@ START_TEST(test_fine_curve_pushes_once) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* A right angle still pushes twice. */
-START_TEST(test_corner_pushes_twice) {
+TEST(test_corner_pushes_twice) {
   rig r;
   rig_open(&r, "polyline 0.238 0.3 0.238 0.238 0.3 0.238\n");
   ethd_setup_transition(&r.setup, &ethd_transition_smooth);
@@ -269,10 +260,9 @@ START_TEST(test_corner_pushes_twice) {
   ck_assert(r.trace.fe[0] > 2.4 && r.trace.fe[1] > 2.4);
   rig_close(&r);
 }
-END_TEST
 
 /* A thin wall is never passed unseen: 2 m/s, 2 mm a tick, at any phase. */
-START_TEST(test_no_tunnelling) {
+TEST(test_no_tunnelling) {
   for (int phase = 0; phase < 40; phase++) {
     rig r;
     rig_open(&r, "segment 0.25 0.2 0.25 0.3\n");
@@ -294,11 +284,10 @@ START_TEST(test_no_tunnelling) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* A contact whose law fails at its first tick belongs to its body: nobody looks for it in the scene that isn't
    there, or in one without objects, and the next tick goes on as if the contact began then. */
-START_TEST(test_contact_fails_on_a_body) {
+TEST_LOOP(test_contact_fails_on_a_body, 0, 2) {
   const double pose[6] = {0.239, 0.7, 0, 0.1, 0, 0};
   for (int how = MOODY_FAIL; how <= MOODY_BAD; how++) {
     if (how == MOODY_POSITIVE) continue;
@@ -327,24 +316,4 @@ START_TEST(test_contact_fails_on_a_body) {
     rig_close(&r);
     ethd_scene_destroy(body);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("bodies");
-  TCase *t = tcase_create("bodies");
-  tcase_add_test(t, test_moving_wall_pushes);
-  tcase_add_test(t, test_turning_wall);
-  tcase_add_test(t, test_same_as_drawn_there);
-  tcase_add_test(t, test_pose_holds);
-  tcase_add_test(t, test_body_comes);
-  tcase_add_test(t, test_released);
-  tcase_add_test(t, test_skip);
-  tcase_add_test(t, test_unreadable_scene);
-  tcase_add_test(t, test_fine_curve_pushes_once);
-  tcase_add_test(t, test_corner_pushes_twice);
-  tcase_add_test(t, test_no_tunnelling);
-  tcase_add_loop_test(t, test_contact_fails_on_a_body, 0, 2);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -12,7 +12,7 @@
 
 /* Value and slope of line and root meet at a/rate^2, `way` is the other way round, and a point that moves by the curve
    in small steps needs v^2/(2a) + d_l/2, until it is on the line. */
-START_TEST(test_curve) {
+TEST(test_curve) {
   const ethd__brake_curve c = ethd__brake_curve_of(40, 400, T);
   const double at = 40.0 / (400 * 400), h = 1e-7 * at;
   ck_assert_double_eq_tol(c.linear, at, 1e-15);
@@ -34,11 +34,10 @@ START_TEST(test_curve) {
   ck_assert_double_eq_tol(t, (0.5 - 400 * at) / 40, 2e-6);
   ck_assert(ethd__brake_curve_of(40, 2000, T).rate == 500); /* half a period's inverse */
 }
-END_TEST
 
 /* What white noise of the distances makes of the speed, by the squares of its answer to one of them: Morrison's closed
    form. A constant disturbance leaves no error. */
-START_TEST(test_observer) {
+TEST_LOOP(test_observer, 0, 3) {
   const double b = 0.5 + 0.2 * _i;
   ethd__ring_observer o = {0, 0, 0};
   double squares = 0;
@@ -56,7 +55,6 @@ START_TEST(test_observer) {
   ck_assert_double_eq_tol(o.v, 0.2 - 3 * 0.4, 1e-9);
   ck_assert_double_eq_tol(o.w, -1, 1e-6);
 }
-END_TEST
 
 /* A braking of 15 ms from 0.5 m/s: the ring has k times the model's deceleration, and a transmission that has given way
    by `stretch` within 3 ms. */
@@ -76,7 +74,7 @@ static void brake(double *memory, double k, double stretch, double deeper) {
   ethd__brake_learner_end(&l, deeper, 0.3, memory); /* once */
 }
 
-START_TEST(test_learner) {
+TEST_LOOP(test_learner, 0, 6) {
   static const double ks[] = {0.7, 0.96, 1.3};
   static const double stretches[] = {0, 6e-4};
   double memory[ETHD_MEMORY] = {0}, k = ks[_i % 3], stretch = stretches[_i / 3];
@@ -85,10 +83,9 @@ START_TEST(test_learner) {
   double sure = k > 1.05 ? k - 0.05 : k < 0.95 ? k + 0.05 : 1;
   ck_assert_double_eq_tol(ethd__brake_learnt(memory), sure, 0.02); /* the prior's share */
 }
-END_TEST
 
 /* What went too deep never says that there is more deceleration; the other way round it counts. */
-START_TEST(test_learner_is_careful) {
+TEST(test_learner_is_careful) {
   double memory[ETHD_MEMORY] = {0};
   brake(memory, 1.3, 0, 1e-4);
   ck_assert(memory[0] == 0 && memory[1] == 0);
@@ -97,16 +94,4 @@ START_TEST(test_learner_is_careful) {
   double was = memory[0];
   brake(memory, 9, 0, 0); /* no ring */
   ck_assert(memory[0] == was);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("braking");
-  TCase *all = tcase_create("all");
-  tcase_add_test(all, test_curve);
-  tcase_add_loop_test(all, test_observer, 0, 3);
-  tcase_add_loop_test(all, test_learner, 0, 6);
-  tcase_add_test(all, test_learner_is_careful);
-  suite_add_tcase(suite, all);
-  return rig_run(suite);
 }

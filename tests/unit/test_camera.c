@@ -18,7 +18,7 @@
 
 /* As Python's struct packs them, and a CRC worked out by hand of the polynomial (tests/camera.sh sends them so,
    too). */
-START_TEST(test_bytes) {
+TEST(test_bytes) {
   static const uint8_t wire[ETHD__EXPOSURE_SIZE] = {'E',  'F',  'C',  '1',  0x02, 0x01, 0x00, 0x00, 0x00, 0xca, 0x9a,
                                                     0x3b, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
                                                     0xd0, 0x3f, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xd0, 0xbf, 0x00,
@@ -32,11 +32,10 @@ START_TEST(test_bytes) {
   ck_assert_mem_eq(wire, again, sizeof wire);
   ck_assert(!ethd__exposure_decode(wire, sizeof wire - 1, &e));
 }
-END_TEST
 
 /* Datagrams that are late at random, now and then much; the sender's quartz is 50 ppm off: instants are right to 0.3
    ms. */
-START_TEST(test_clock) {
+TEST(test_clock) {
   ethd__camera_clock c = {.delay = 11100000};
   const int64_t zero = INT64_MAX - 500000000; /* the sender's count wraps round on the way */
   double worst = 0;
@@ -52,11 +51,10 @@ START_TEST(test_clock) {
   ck_assert_double_lt(worst, 0.3e-3);
   ck_assert(c.jumps == 0 && c.lost == 0);
 }
-END_TEST
 
 /* Out of order, twice, missing: counted, and what is older than the last isn't used. A sender that begins anew is
    followed when its clock is placed. */
-START_TEST(test_order) {
+TEST(test_order) {
   ethd__camera_clock c = {.delay = 0};
   const uint32_t seq[] = {10, 11, 13, 12, 13, 14};
   const bool used[] = {true, true, true, false, false, true};
@@ -73,7 +71,6 @@ START_TEST(test_order) {
   }
   ck_assert_uint_eq(c.jumps, 1);
 }
-END_TEST
 
 /* A bridge that runs for a while and is started again, or whose clock is set, under a network that holds every 50th
    datagram back for 30 ms, the first one afterwards too: readings come again by the fifth exposure and are never younger
@@ -98,7 +95,7 @@ static void begin_again(int before, bool counts_anew, int64_t set_ns) {
                 before, counts_anew ? "anew" : "on", set_ns, silent, c.jumps, c.lost);
 }
 
-START_TEST(test_started_again) {
+TEST(test_started_again) {
   static const int before[] = {90, 450, 900, 999, 1001, 5400};
   static const int64_t set[] = {-100000000, -300000000, -1100000000, -5000000000,
                                 100000000,  300000000,  1100000000,  5000000000};
@@ -107,7 +104,6 @@ START_TEST(test_started_again) {
   begin_again(5400, true, -INT64_C(60000000000)); /* its clock began with it */
   begin_again(450, true, -300000000);
 }
-END_TEST
 
 /* ---- the driver ---- */
 
@@ -118,7 +114,7 @@ static void send_exposure(int fd, uint32_t seq, ethd_vec finger, uint16_t flags)
   ck_assert_int_eq(sendto(fd, wire, sizeof wire, 0, (struct sockaddr *)&address, sizeof address), sizeof wire);
 }
 
-START_TEST(test_driver) {
+TEST(test_driver) {
   char listen[64], message[ETHD_MESSAGE_MAX] = "";
   int fd = sender();
   void *device;
@@ -168,10 +164,9 @@ START_TEST(test_driver) {
   ethd_driver_camera.close(device);
   close(fd);
 }
-END_TEST
 
 /* The first datagrams came late: the clock is placed 6 ms earlier by the third. Instants don't go back. */
-START_TEST(test_instants_keep_their_order) {
+TEST(test_instants_keep_their_order) {
   ethd__inbox inbox;
   memset(&inbox, 0, sizeof inbox);
   ck_assert_int_eq(ethd__inbox_open(&inbox, 300), ETHD_OK);
@@ -183,10 +178,9 @@ START_TEST(test_instants_keep_their_order) {
   }
   ethd__inbox_close(&inbox);
 }
-END_TEST
 
 /* A reading that is younger than the tick is given at the next one, once. */
-START_TEST(test_younger_than_the_tick) {
+TEST(test_younger_than_the_tick) {
   ethd__inbox inbox;
   memset(&inbox, 0, sizeof inbox);
   ck_assert_int_eq(ethd__inbox_open(&inbox, 90), ETHD_OK);
@@ -204,20 +198,4 @@ START_TEST(test_younger_than_the_tick) {
     ck_assert(s.sample_ns == (have[i] ? 1000500 : 0) && s.centre[0] == (have[i] ? 0.2 : 0));
   }
   ethd__inbox_close(&inbox);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("camera");
-  TCase *tc = tcase_create("camera");
-  tcase_set_timeout(tc, 60);
-  tcase_add_test(tc, test_bytes);
-  tcase_add_test(tc, test_clock);
-  tcase_add_test(tc, test_order);
-  tcase_add_test(tc, test_started_again);
-  tcase_add_test(tc, test_driver);
-  tcase_add_test(tc, test_instants_keep_their_order);
-  tcase_add_test(tc, test_younger_than_the_tick);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }

@@ -8,8 +8,9 @@
 
 #include "finger/camera.h"
 #include "unit/camera_rig.h"
+#include "unit/suite.h"
 
-START_TEST(test_refused) {
+TEST(test_refused) {
   static const struct {
     const char *listen, *from, *says;
   } rows[] = {
@@ -44,7 +45,6 @@ START_TEST(test_refused) {
     ck_assert_msg(strstr(message, rows[i].says) != NULL, "%s", message);
   }
 }
-END_TEST
 
 /* Opens the camera on `host` while a child sends exposures there from the address `own`; the driver listens to
    `from`. */
@@ -82,7 +82,7 @@ static ethd_status open_beside(const char *host, const char *from, const char *o
 
 /* Whoever can send to the camera's port moves the ring, so with `from` all others' datagrams pass unseen. A message
    that isn't empty asks for little patience. */
-START_TEST(test_only_the_bridge) {
+TEST(test_only_the_bridge) {
   char message[ETHD_MESSAGE_MAX] = "";
   ck_assert_msg(open_beside("127.0.0.1", "127.0.0.2", "127.0.0.2", message) == ETHD_OK, "%s", message);
   strcpy(message, "little");
@@ -92,9 +92,8 @@ START_TEST(test_only_the_bridge) {
   ck_assert_int_eq(open_beside("127.0.0.1", "::1", "127.0.0.1", message), ETHD_E_DEVICE);
   ck_assert_msg(strstr(message, "no exposure came in 0.3 s, 0 other datagrams") != NULL, "%s", message);
 }
-END_TEST
 
-START_TEST(test_longer_addresses) {
+TEST(test_longer_addresses) {
   char message[ETHD_MESSAGE_MAX] = "";
   int fd = socket(AF_INET6, SOCK_DGRAM, 0);
   const struct sockaddr_in6 own = {.sin6_family = AF_INET6, .sin6_addr = IN6ADDR_LOOPBACK_INIT};
@@ -107,9 +106,8 @@ START_TEST(test_longer_addresses) {
   ck_assert_int_eq(open_beside("::1", "::2", "::1", message), ETHD_E_DEVICE);
   ck_assert_msg(strstr(message, "no exposure came in 0.3 s, 0 other datagrams") != NULL, "%s", message);
 }
-END_TEST
 
-START_TEST(test_taken_port) {
+TEST(test_taken_port) {
   char listen[64], expected[96], message[ETHD_MESSAGE_MAX] = "";
   void *device;
   int fd = sender();
@@ -119,17 +117,4 @@ START_TEST(test_taken_port) {
   ck_assert_int_eq(open_camera(&(ethd_setting){"listen", listen, 2}, 1, &device, message), ETHD_E_DEVICE);
   ck_assert_str_eq(message, expected);
   close(fd);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("camera_hosts");
-  TCase *tc = tcase_create("camera_hosts");
-  tcase_set_timeout(tc, 60);
-  tcase_add_test(tc, test_refused);
-  tcase_add_test(tc, test_only_the_bridge);
-  tcase_add_test(tc, test_longer_addresses);
-  tcase_add_test(tc, test_taken_port);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }

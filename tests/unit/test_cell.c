@@ -21,7 +21,7 @@ static int whole(const value *v) {
   return 1;
 }
 
-START_TEST(test_latest) {
+TEST(test_latest) {
   ethd_cell *cell;
   value v = make(7);
   ck_assert_int_eq(ethd_cell_create(sizeof v, &cell, NULL), ETHD_OK);
@@ -43,9 +43,8 @@ START_TEST(test_latest) {
   ethd_cell_destroy(cell);
   ethd_cell_destroy(NULL);
 }
-END_TEST
 
-START_TEST(test_sizes) {
+TEST(test_sizes) {
   ethd_cell *cell;
   ethd_error error;
   ck_assert_int_eq(ethd_cell_create(0, &cell, &error), ETHD_E_RANGE);
@@ -63,7 +62,6 @@ START_TEST(test_sizes) {
     free(out);
   }
 }
-END_TEST
 
 #define PUTS 200000
 
@@ -76,7 +74,7 @@ static void *writer(void *cell) {
 }
 
 /* Values come whole, never go back, and the last one arrives. */
-START_TEST(test_threads) {
+TEST(test_threads) {
   ethd_cell *cell;
   pthread_t thread;
   value v = make(0);
@@ -91,16 +89,4 @@ START_TEST(test_threads) {
   }
   pthread_join(thread, NULL);
   ethd_cell_destroy(cell);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("cell");
-  TCase *tc = tcase_create("cell");
-  tcase_set_timeout(tc, 60);
-  tcase_add_test(tc, test_latest);
-  tcase_add_test(tc, test_sizes);
-  tcase_add_test(tc, test_threads);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }

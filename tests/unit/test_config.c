@@ -1,5 +1,4 @@
 /* Configurations: every key lands where it belongs, whatever the order. */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +7,7 @@
 
 #include "config_text.h"
 #include "ethd/config.h"
+#include "unit/suite.h"
 
 static char message[ETHD_MESSAGE_MAX];
 
@@ -30,7 +30,7 @@ static double transition_value(const ethd_setup *s, const char *name) {
 
 /* ---- what is accepted ---- */
 
-START_TEST(test_defaults) {
+TEST(test_defaults) {
   static const char *const empties[] = {
       "", "\n", "# nothing\n; either\n", "[arm]\n[contact]\n[arm]\n", "\xef\xbb\xbf", "\r\n[arm]\r\n"};
   for (size_t i = 0; i < sizeof empties / sizeof *empties; i++) {
@@ -60,9 +60,8 @@ START_TEST(test_defaults) {
   ethd_config_free(c);
   ethd_config_free(NULL);
 }
-END_TEST
 
-START_TEST(test_every_key) {
+TEST(test_every_key) {
   ethd_config *c = parse(everything);
   const ethd_setup *s = &c->setup;
   ck_assert_int_eq(s->arm.mechanism, ETHD_ARM_SERIAL);
@@ -93,10 +92,9 @@ START_TEST(test_every_key) {
   ck_assert_str_eq(c->text, everything);
   ethd_config_free(c);
 }
-END_TEST
 
 /* Keys of one section in every rotation, sections in reverse: the setup stays the same. */
-START_TEST(test_order_never_matters) {
+TEST(test_order_never_matters) {
   static const char *const keys[] = {"law = offset", "preset = paper", "eps_max = 0.004", "v_hysteresis = 0.002",
                                      "b_d = 90"};
   enum { COUNT = sizeof keys / sizeof *keys };
@@ -116,9 +114,8 @@ START_TEST(test_order_never_matters) {
       ethd_config_free(c);
     }
 }
-END_TEST
 
-START_TEST(test_preset) {
+TEST(test_preset) {
   ethd_config *c = parse("[transition]\npreset = paper\n");
   ck_assert(isinf(transition_value(&c->setup, "eps_max")) && isinf(transition_value(&c->setup, "t_max")));
   ethd_config_free(c);
@@ -130,9 +127,8 @@ START_TEST(test_preset) {
   ck_assert(isinf(transition_value(&c->setup, "eps_max")));
   ethd_config_free(c);
 }
-END_TEST
 
-START_TEST(test_comments_and_spaces) {
+TEST(test_comments_and_spaces) {
   ethd_config *c = parse("  [contact]  ; walls\n\tk_e=100\t;soft ; really\n  b_e =  7  \n;b_e = 8\n   # b_e = 9\n"
                          "[device]\na = b;c\n# " X50 X50 X50 X50 X50 "\nd = e=f # g\n");
   ck_assert(c->setup.contact_p[0] == 100 && c->setup.contact_p[1] == 7);
@@ -140,7 +136,6 @@ START_TEST(test_comments_and_spaces) {
   ck_assert_str_eq(c->settings[1].value, "e=f # g");
   ethd_config_free(c);
 }
-END_TEST
 
 /* ---- changes of law, single values ---- */
 
@@ -154,7 +149,7 @@ static const char *refused_law(const char *id) {
   return out;
 }
 
-START_TEST(test_transition) {
+TEST(test_transition) {
   ethd_config *c = parse("[transition]\nbeta_min = 0.3\nb_d = 70\nswap_time = 0.5\nv_hysteresis = 0.01\n");
   ethd_setup s = c->setup;
   ck_assert_int_eq(ethd_config_transition(c, "smooth", &s, message), ETHD_OK);
@@ -186,9 +181,8 @@ START_TEST(test_transition) {
   ck_assert_int_eq(ethd_config_law(c, "tracking", "pd", &s, message), ETHD_OK);
   ethd_config_free(c);
 }
-END_TEST
 
-START_TEST(test_set) {
+TEST(test_set) {
   static const char *const refused[][2] = {{"contact.k_e", "-1"},
                                            {"contact.k_e", "x"},
                                            {"contact.k_e", "nan"},
@@ -229,7 +223,6 @@ START_TEST(test_set) {
   ck_assert_str_eq(message, "contact.k_e: found -1, 0 to 1000000 N/m is allowed");
   ethd_config_free(c);
 }
-END_TEST
 
 /* ---- files beside it ---- */
 
@@ -248,7 +241,7 @@ static ethd_status load(const char *folder, ethd_config **out) {
   return ethd_config_load(path, out, message);
 }
 
-START_TEST(test_scene_file) {
+TEST(test_scene_file) {
   char folder[] = "/tmp/ethd-config-XXXXXX", says[512], command[64];
   ethd_config *c;
   ck_assert_ptr_nonnull(mkdtemp(folder));
@@ -276,24 +269,4 @@ START_TEST(test_scene_file) {
   ethd_config_free(c);
   snprintf(command, sizeof command, "rm -r %s", folder);
   ck_assert_int_eq(system(command), 0);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("config");
-  TCase *all = tcase_create("all");
-  tcase_add_test(all, test_defaults);
-  tcase_add_test(all, test_every_key);
-  tcase_add_test(all, test_order_never_matters);
-  tcase_add_test(all, test_preset);
-  tcase_add_test(all, test_comments_and_spaces);
-  tcase_add_test(all, test_transition);
-  tcase_add_test(all, test_set);
-  tcase_add_test(all, test_scene_file);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

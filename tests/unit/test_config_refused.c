@@ -1,12 +1,11 @@
 /* Configurations that are refused: each with its line, what was found and what is allowed. */
-#include <check.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "config_text.h"
 #include "ethd/config.h"
 #include "mutate.h"
+#include "unit/suite.h"
 
 static char message[ETHD_MESSAGE_MAX];
 
@@ -78,7 +77,7 @@ static const bad bads[] = {
     {"[plugins]\nfile = no.so\n", "x.ini:2: plugins.file: /nowhere/no.so: No such file or directory"},
 };
 
-START_TEST(test_bad_texts) {
+TEST(test_bad_texts) {
   for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
     ethd_config *c = (ethd_config *)&i;
     message[0] = 0;
@@ -89,10 +88,9 @@ START_TEST(test_bad_texts) {
                   message, bads[i].says);
   }
 }
-END_TEST
 
 /* Text of somebody else: a plugin is refused by its name, before anybody looks for the file. */
-START_TEST(test_received_text) {
+TEST(test_received_text) {
   const char text[] = "[plugins]\nfile = no.so\n";
   ethd_config *c = (ethd_config *)&c;
   ck_assert_int_eq(ethd_config_parse_received(text, strlen(text), "x.ini", "/nowhere", &c, message), ETHD_E_LOAD);
@@ -103,9 +101,8 @@ START_TEST(test_received_text) {
   ck_assert_double_eq(ethd_setup_get(&c->setup, "contact.k_e"), 7);
   ethd_config_free(c);
 }
-END_TEST
 
-START_TEST(test_too_many_keys) {
+TEST(test_too_many_keys) {
   static char text[64 * 1024];
   char *p = text + sprintf(text, "[device]\n");
   for (int i = 0; i < 513; i++) p += sprintf(p, "k%d = 1\n", i);
@@ -113,11 +110,10 @@ START_TEST(test_too_many_keys) {
   ck_assert_int_lt(ethd_config_parse(text, (size_t)(p - text), "x.ini", NULL, &c, message), 0);
   ck_assert_str_eq(message, "x.ini:514: over 512 keys");
 }
-END_TEST
 
 /* ---- whatever comes ---- */
 
-START_TEST(test_mutations) {
+TEST(test_mutations) {
   static const char *const words[] = {"[contact]\n",
                                       "\n",
                                       "=",
@@ -159,21 +155,4 @@ START_TEST(test_mutations) {
     ck_assert_msg(strncmp(message, "x.ini:", 6) == 0 && !strpbrk(message, "\n\r"), "%s", message);
   }
   ck_assert_int_gt(accepted, 100);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("config_refused");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_test(all, test_bad_texts);
-  tcase_add_test(all, test_received_text);
-  tcase_add_test(all, test_too_many_keys);
-  tcase_add_test(all, test_mutations);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

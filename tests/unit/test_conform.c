@@ -1,5 +1,4 @@
 /* A driver that keeps its contract, and one that breaks it in each way that is asked for. */
-#include <check.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -7,6 +6,7 @@
 #include <unistd.h>
 
 #include "ethd/conform.h"
+#include "unit/suite.h"
 
 enum {
   SOUND,
@@ -189,15 +189,14 @@ static const struct {
                     [COASTS] = {"restart", ETHD_VERDICT_KEPT},    [BLOCKED] = {"watchdog", ETHD_VERDICT_NOT_ASKED},
                     [ROLLS] = {"restart", ETHD_VERDICT_KEPT},     [LATCHES] = {"restart", ETHD_VERDICT_KEPT}};
 
-START_TEST(test_way) {
+TEST_LOOP(test_way, SOUND + 1, WAYS) {
   ethd_status status;
   way = _i;
   ck_assert_int_eq(ask(expected[_i].question, 0.1, &status), expected[_i].verdict);
   ck_assert_int_eq(status, expected[_i].verdict == ETHD_VERDICT_BROKEN ? ETHD_E_DEVICE : ETHD_OK);
 }
-END_TEST
 
-START_TEST(test_sound) {
+TEST(test_sound) {
   static const char *const all[] = {"table", "open",   "limits",   "sense", "zero",
                                     "sign",  "counts", "watchdog", "safe",  "restart"};
   ethd_status status;
@@ -210,10 +209,9 @@ START_TEST(test_sound) {
     ck_assert_int_eq(ask("sign", none[i], &status), ETHD_VERDICT_NOT_ASKED);
   ck_assert_int_eq(ask("zero", 0, &status), ETHD_VERDICT_KEPT);
 }
-END_TEST
 
 /* Stopped at any push: no torque and no start follow, the device is made safe and closed, and the rest isn't asked. */
-START_TEST(test_stopped) {
+TEST(test_stopped) {
   static const int at[] = {1, 2, 100, 101, 350, 500, 700, 900};
   for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
     ethd_status status;
@@ -225,19 +223,4 @@ START_TEST(test_stopped) {
     ck_assert(halted && !starts_after && !pushes_after && safe_after > 0);
     ck_assert_int_eq(opened, 0);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("conform");
-  TCase *tests = tcase_create("conform");
-  tcase_add_test(tests, test_sound);
-  tcase_add_loop_test(tests, test_way, SOUND + 1, WAYS);
-  tcase_add_test(tests, test_stopped);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed != 0;
 }

@@ -21,7 +21,7 @@ static void open_with(rig *r, const char *scene, const ethd_transition_law *law)
 /* A concave corner of one object: two contacts, each with a machine of its own. */
 static const char corner[] = "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\n";
 
-START_TEST(test_corner) {
+TEST(test_corner) {
   rig r;
   open_with(&r, corner, &ethd_transition_smooth);
   motion m = at(0.249, 0.248, -0.1, 0.2);
@@ -33,9 +33,8 @@ START_TEST(test_corner) {
   close_to(t->beta, 0.1 + 0.9 * 2.5 / 2.5);
   rig_close(&r);
 }
-END_TEST
 
-START_TEST(test_corner_has_two_machines) {
+TEST(test_corner_has_two_machines) {
   rig r;
   open_with(&r, corner, &ethd_transition_offset);
   motion m = at(0.249, 0.2505, -0.3, 0);
@@ -53,11 +52,10 @@ START_TEST(test_corner_has_two_machines) {
   close_to(t->fd[1], 100 * 0.3);
   rig_close(&r);
 }
-END_TEST
 
 /* A channel of one object, a little wider than the ring and d_beta on both sides: when one wall is left
    and the other met at the same tick, the second begins anew. */
-START_TEST(test_state_stays_with_its_wall) {
+TEST(test_state_stays_with_its_wall) {
   rig r;
   open_with(&r, "polygon 0.1 0.1 0.4 0.1 0.4 0.5 0.26705 0.5 0.26705 0.15 0.238 0.15 0.238 0.5 0.1 0.5\n",
             &ethd_transition_offset);
@@ -73,7 +71,6 @@ START_TEST(test_state_stays_with_its_wall) {
   ck_assert_int_eq(rig_step(&r, &m)->state, ETHD_BRAKING);
   rig_close(&r);
 }
-END_TEST
 
 /* What two contacts say, together: forces add, the smaller beta and its shift count. */
 static ethd_status saying_step(const double *p, void *state, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
@@ -93,7 +90,7 @@ static const ethd_transition_law saying = {
     .step = saying_step,
 };
 
-START_TEST(test_rulings_together) {
+TEST(test_rulings_together) {
   for (int swapped = 0; swapped < 2; swapped++) { /* whichever is the deeper */
     rig r;
     open_with(&r, RIG_WALL "halfplane 0 -1 -0.238\n", &saying);
@@ -113,10 +110,9 @@ START_TEST(test_rulings_together) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* Equal depths: the lower object is shown. */
-START_TEST(test_order_of_equals) {
+TEST(test_order_of_equals) {
   rig r;
   open_with(&r, "halfplane 0 1 0.9\n" RIG_WALL RIG_WALL, &ethd_transition_smooth);
   motion m = at(0.249, 0.25, 0, 0);
@@ -125,7 +121,6 @@ START_TEST(test_order_of_equals) {
   close_to(t->fe[0], 5);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- too many ---- */
 
@@ -139,7 +134,7 @@ static const char *stack_of(int count, const char *more) {
   return text;
 }
 
-START_TEST(test_overflow_keeps_the_deepest) {
+TEST_LOOP(test_overflow_keeps_the_deepest, 0, 6) {
   const int counts[] = {8, 9, 10, 16, 17, 30};
   int walls = counts[_i];
   rig r;
@@ -156,10 +151,9 @@ START_TEST(test_overflow_keeps_the_deepest) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* Eight are there when a ninth becomes the deepest: it takes the shallowest one's place. */
-START_TEST(test_newcomer_that_is_deeper) {
+TEST(test_newcomer_that_is_deeper) {
   rig r;
   open_with(&r, stack_of(8, "halfplane 0 -1 -0.238\n"), &ethd_transition_smooth);
   motion m = at(0.249, 0.256, 0, 0);
@@ -176,7 +170,6 @@ START_TEST(test_newcomer_that_is_deeper) {
   close_to(rig_step(&r, &m)->fe[0], 2500 * (8 * 0.001 - 1e-4 * (7 * 8 / 2)));
   rig_close(&r);
 }
-END_TEST
 
 static double youngest, oldest;
 
@@ -187,7 +180,7 @@ static ethd_status aging_step(const double *p, void *state, const ethd_contact *
 }
 
 /* The newcomer ends the shallowest contact, and no other begins anew for it. */
-START_TEST(test_newcomer_leaves_the_others) {
+TEST(test_newcomer_leaves_the_others) {
   ethd_transition_law aging = ethd_transition_smooth;
   aging.step = aging_step;
   rig r;
@@ -202,11 +195,10 @@ START_TEST(test_newcomer_leaves_the_others) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* In a new scene that has the same walls each contact goes on, the second one as well, and so it does when the first
    one's wall is gone. */
-START_TEST(test_new_scene_continues_each) {
+TEST(test_new_scene_continues_each) {
   const char *const scenes[] = {"halfplane -1 0 -0.238\nhalfplane 0 -1 -0.238\n", "halfplane 0 -1 -0.238\n"};
   for (int k = 0; k < 2; k++) {
     ethd_transition_law aging = ethd_transition_smooth;
@@ -229,12 +221,11 @@ START_TEST(test_new_scene_continues_each) {
     ethd_scene_destroy(other);
   }
 }
-END_TEST
 
 /* ---- what counts ---- */
 
 /* Not before d_re < d_beta (2.5 mm), or d_fe <= d_beta however far the finger is ahead. */
-START_TEST(test_within_reach) {
+TEST(test_within_reach) {
   rig r;
   open_with(&r, RIG_WALL, &ethd_transition_smooth);
   motion m = rig_at(0.002501, 0, 0);
@@ -254,10 +245,9 @@ START_TEST(test_within_reach) {
   close_to(t->beta, 0.1 + 0.9 * 0.6);
   rig_close(&r);
 }
-END_TEST
 
 /* The tangent line stands for the surface, for the finger too. */
-START_TEST(test_circle) {
+TEST(test_circle) {
   rig r;
   open_with(&r, "circle 0.2 0.25 0.03\n", &ethd_transition_smooth);
   motion m = {{0.244, 0.25}, {-0.2, 0.7}, {0.245, 0.258}, {0, 0}};
@@ -267,9 +257,8 @@ START_TEST(test_circle) {
   close_to(t->v_n, 0.2);
   rig_close(&r);
 }
-END_TEST
 
-START_TEST(test_no_scene_and_empty_scene) {
+TEST(test_no_scene_and_empty_scene) {
   for (int empty = 0; empty < 2; empty++) {
     rig r;
     open_with(&r, empty ? "# nothing\n" : NULL, &ethd_transition_offset);
@@ -279,7 +268,6 @@ START_TEST(test_no_scene_and_empty_scene) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* A contact lives until its state is transparent, however far away; its law is asked each tick. */
 static ethd_status lingering_step(const double *p, void *state, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
@@ -297,7 +285,7 @@ static const ethd_transition_law lingering = {
     .step = lingering_step,
 };
 
-START_TEST(test_contact_lives_out_of_reach) {
+TEST(test_contact_lives_out_of_reach) {
   rig r;
   open_with(&r, RIG_WALL "circle 0.25 0.35 0.01\n", &lingering);
   motion m = rig_at(0.001, 0, 0);
@@ -317,10 +305,9 @@ START_TEST(test_contact_lives_out_of_reach) {
   ck_assert_int_eq(rig_step(&r, &m)->state, 5);
   rig_close(&r);
 }
-END_TEST
 
 /* v_th goes first, far outside as well: eps < 0 for one tick. */
-START_TEST(test_braking_that_ends_far_outside) {
+TEST(test_braking_that_ends_far_outside) {
   rig r;
   open_with(&r, RIG_WALL, &ethd_transition_offset);
   motion m = rig_at(-0.001, 0.4, 0);
@@ -333,7 +320,6 @@ START_TEST(test_braking_that_ends_far_outside) {
   ck_assert(t->state == ETHD_TRANSPARENT && t->contacts == 0 && t->eps == 0);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- thin walls ---- */
 
@@ -341,7 +327,7 @@ END_TEST
 static const char thin[] = "segment 0.238 0.1 0.238 0.4\n";
 
 /* The side is the one on which the contact began, through the wall and out of reach behind it. */
-START_TEST(test_thin_wall_remembers_its_side) {
+TEST(test_thin_wall_remembers_its_side) {
   rig r;
   open_with(&r, thin, &ethd_transition_smooth);
   for (double d = 0.002; d > -0.1; d -= 0.004) {
@@ -357,10 +343,9 @@ START_TEST(test_thin_wall_remembers_its_side) {
   close_to(rig_step(&r, &m)->d_re, 0.001);
   rig_close(&r);
 }
-END_TEST
 
 /* Behind it there is another wall; the thin one is the deeper. */
-START_TEST(test_thin_wall_is_the_deepest) {
+TEST(test_thin_wall_is_the_deepest) {
   rig r;
   open_with(&r, "segment 0.238 0.1 0.238 0.4\nhalfplane -1 0 -0.218\n", &ethd_transition_smooth);
   for (double x = 0.251; x > 0.22; x -= 0.005) {
@@ -372,10 +357,9 @@ START_TEST(test_thin_wall_is_the_deepest) {
   ck_assert_int_eq(r.trace.contacts, 2);
   rig_close(&r);
 }
-END_TEST
 
 /* Begun on the left, it is a wall toward +x. */
-START_TEST(test_thin_wall_from_behind) {
+TEST(test_thin_wall_from_behind) {
   rig r;
   open_with(&r, thin, &ethd_transition_smooth);
   motion m = at(0.226 - 0.001, 0.25, 0.1, 0);
@@ -386,10 +370,9 @@ START_TEST(test_thin_wall_from_behind) {
   close_to(t->fe[0], -2500 * 0.020 - 45 * 0.1);
   rig_close(&r);
 }
-END_TEST
 
 /* The finger is measured from the ring's side. */
-START_TEST(test_thin_wall_and_a_finger_behind_it) {
+TEST(test_thin_wall_and_a_finger_behind_it) {
   rig r;
   open_with(&r, thin, &ethd_transition_smooth);
   motion m = {{0.251, 0.25}, {0, 0}, {0.228, 0.25}, {0, 0}};
@@ -398,10 +381,9 @@ START_TEST(test_thin_wall_and_a_finger_behind_it) {
   ck_assert_double_eq(t->beta, 0.1);
   rig_close(&r);
 }
-END_TEST
 
 /* Past an end the wall is a point; beyond it the other side is as good. */
-START_TEST(test_thin_wall_round_an_end) {
+TEST(test_thin_wall_round_an_end) {
   rig r;
   open_with(&r, thin, &ethd_transition_smooth);
   motion m = at(0.251, 0.395, 0, 0);
@@ -417,11 +399,10 @@ START_TEST(test_thin_wall_round_an_end) {
   close_to(t->fe[0], -2500 * 0.0005); /* pushed to the left */
   rig_close(&r);
 }
-END_TEST
 
 /* ---- materials ---- */
 
-START_TEST(test_materials) {
+TEST(test_materials) {
   rig r;
   open_with(&r,
             "material soft k_e=500 b_e=10\nmaterial hard k_e=9000\n" RIG_WALL
@@ -433,9 +414,8 @@ START_TEST(test_materials) {
   close_to(t->fe[1], 9000 * 0.001 + 45 * 0.1); /* b_e: the setup's */
   rig_close(&r);
 }
-END_TEST
 
-START_TEST(test_materials_are_checked) {
+TEST(test_materials_are_checked) {
   rig r;
   ethd_error error;
   rig_open(&r, "\nmaterial odd c_e=1\nhalfplane -1 0 -0.238\n");
@@ -450,33 +430,4 @@ START_TEST(test_materials_are_checked) {
   ck_assert_str_eq(error.name, "material.odd.k_e");
   ck_assert(error.found == -1 && error.min == 0);
   rig_close(&r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("contacts");
-  TCase *t = tcase_create("contacts");
-  tcase_add_test(t, test_corner);
-  tcase_add_test(t, test_corner_has_two_machines);
-  tcase_add_test(t, test_state_stays_with_its_wall);
-  tcase_add_test(t, test_rulings_together);
-  tcase_add_test(t, test_order_of_equals);
-  tcase_add_loop_test(t, test_overflow_keeps_the_deepest, 0, 6);
-  tcase_add_test(t, test_newcomer_that_is_deeper);
-  tcase_add_test(t, test_newcomer_leaves_the_others);
-  tcase_add_test(t, test_new_scene_continues_each);
-  tcase_add_test(t, test_within_reach);
-  tcase_add_test(t, test_circle);
-  tcase_add_test(t, test_no_scene_and_empty_scene);
-  tcase_add_test(t, test_contact_lives_out_of_reach);
-  tcase_add_test(t, test_braking_that_ends_far_outside);
-  tcase_add_test(t, test_thin_wall_remembers_its_side);
-  tcase_add_test(t, test_thin_wall_is_the_deepest);
-  tcase_add_test(t, test_thin_wall_from_behind);
-  tcase_add_test(t, test_thin_wall_and_a_finger_behind_it);
-  tcase_add_test(t, test_thin_wall_round_an_end);
-  tcase_add_test(t, test_materials);
-  tcase_add_test(t, test_materials_are_checked);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -8,7 +8,7 @@
 /* ---- by hand ---- */
 
 /* Parallel arm at link angles 90 and 0 deg: J = ((-0.25, 0), (0, 0.25)), so F_x gives tau1 = -F_x / 4. */
-START_TEST(test_stiffness_felt_in_x) {
+TEST(test_stiffness_felt_in_x) {
   rig r;
   rig_open(&r, NULL);
   rig_start(&r);
@@ -30,10 +30,9 @@ START_TEST(test_stiffness_felt_in_x) {
   ck_assert_double_eq_tol(t->tau[1], 0.16, 1e-12);
   rig_close(&r);
 }
-END_TEST
 
 /* VO-A, 2 mm inside at 0.1 m/s, finger at the ring's centre: d_fe = -2 + 4.5 = 2.5 mm = d_beta, beta = 1. */
-START_TEST(test_smooth_by_hand) {
+TEST(test_smooth_by_hand) {
   rig r;
   rig_open(&r, RIG_WALL);
   ethd_setup_transition(&r.setup, &ethd_transition_smooth);
@@ -53,10 +52,9 @@ START_TEST(test_smooth_by_hand) {
   ck_assert_double_eq_tol(rig_step(&r, &m)->fe[0], 5, 1e-11);
   rig_close(&r);
 }
-END_TEST
 
 /* VO-B: nothing at the switch, a wall at x_eps behind it. */
-START_TEST(test_offset_by_hand) {
+TEST(test_offset_by_hand) {
   rig r;
   rig_open(&r, RIG_WALL);
   rig_start(&r);
@@ -81,10 +79,9 @@ START_TEST(test_offset_by_hand) {
   ck_assert(t->fe[0] == 0 && t->fd[0] == 0 && t->state == ETHD_VO);
   rig_close(&r);
 }
-END_TEST
 
 /* v_hysteresis: the branch changes only beyond it. */
-START_TEST(test_hysteresis) {
+TEST(test_hysteresis) {
   const double v[] = {0.1, -0.019, -0.021, 0.019, 0.021, -0.001};
   const double damped[] = {0.1, -0.019, 0, 0, 0.021, -0.001};
   rig r;
@@ -98,10 +95,9 @@ START_TEST(test_hysteresis) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* Whatever law, depth, speed: no wall pulls. */
-START_TEST(test_never_attractive) {
+TEST(test_never_attractive) {
   const ethd_contact_law *const laws[] = {&ethd_contact_kelvin_voigt, &ethd_contact_spring,
                                           &ethd_contact_hunt_crossley};
   int resting = 0;
@@ -124,11 +120,10 @@ START_TEST(test_never_attractive) {
   }
   ck_assert_int_gt(resting, 50); /* the cut was needed */
 }
-END_TEST
 
 /* ---- where the finger is unknown, and time ---- */
 
-START_TEST(test_no_finger_seen) {
+TEST(test_no_finger_seen) {
   rig r;
   rig_open(&r, RIG_WALL);
   rig_start(&r);
@@ -143,10 +138,9 @@ START_TEST(test_no_finger_seen) {
   ck_assert_double_eq_tol(t->d_fe, 0.001, 1e-14); /* with R_r and the finger at the ring's centre */
   rig_close(&r);
 }
-END_TEST
 
 /* A gap of whole periods is one longer step: speed, braking time, fade. */
-START_TEST(test_missed_ticks) {
+TEST(test_missed_ticks) {
   rig r;
   rig_open(&r, RIG_WALL);
   ethd_setup_velocity(&r.setup, ETHD_VELOCITY_DIFFERENCE);
@@ -177,13 +171,12 @@ START_TEST(test_missed_ticks) {
   ck_assert_double_eq_tol(r.trace.qd[0], 0.4, 1e-9);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- readings of the finger ---- */
 
 /* A reading is relative to where the ring stood when it was taken: between ticks linear, and a tick
    without measurement in between changes nothing. */
-START_TEST(test_reading_in_the_past) {
+TEST(test_reading_in_the_past) {
   for (int with_gap = 0; with_gap < 2; with_gap++) {
     rig r;
     rig_open(&r, NULL);
@@ -214,20 +207,4 @@ START_TEST(test_reading_in_the_past) {
     ck_assert_uint_eq(c.readings_dropped, 2);
     rig_close(&r);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("control");
-  TCase *t = tcase_create("control");
-  tcase_add_test(t, test_stiffness_felt_in_x);
-  tcase_add_test(t, test_smooth_by_hand);
-  tcase_add_test(t, test_offset_by_hand);
-  tcase_add_test(t, test_hysteresis);
-  tcase_add_test(t, test_never_attractive);
-  tcase_add_test(t, test_no_finger_seen);
-  tcase_add_test(t, test_missed_ticks);
-  tcase_add_test(t, test_reading_in_the_past);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

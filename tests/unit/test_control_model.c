@@ -186,7 +186,7 @@ static const ethd_transition_law *const strategies[] = {&ethd_transition_abrupt,
                                                         &ethd_transition_offset};
 
 /* _i: mechanism, one wall or four, strategy, preset or the product's caps with a hysteresis. */
-START_TEST(test_against_second_derivation) {
+TEST_LOOP(test_against_second_derivation, 0, 24) {
   int serial = _i & 1, walls = _i & 2 ? 4 : 1, product = _i & 4, seen[3] = {0};
   rig r;
   rig_open(&r, walls == 4 ? four : RIG_WALL);
@@ -208,13 +208,4 @@ START_TEST(test_against_second_derivation) {
   ck_assert_msg(seen[0] > 500 && (_i / 8 < 2 || seen[1] > 100) && seen[2] > 500, "ticks by state: %d %d %d", seen[0],
                 seen[1], seen[2]);
   rig_close(&r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("control_model");
-  TCase *t = tcase_create("control_model");
-  tcase_add_loop_test(t, test_against_second_derivation, 0, 24);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

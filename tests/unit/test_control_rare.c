@@ -23,7 +23,7 @@ static uint64_t lost(const rig *r) {
 /* ---- contacts ---- */
 
 /* In a concave corner of one polygon, two; from far beyond the corner's point both lead to the same touch. */
-START_TEST(test_two_become_one) {
+TEST(test_two_become_one) {
   rig r;
   open_with(&r, "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\n", &ethd_transition_smooth);
   motion m = at(0.249, 0.249);
@@ -35,10 +35,9 @@ START_TEST(test_two_become_one) {
   ck_assert_int_eq(rig_step(&r, &m)->contacts, 2);
   rig_close(&r);
 }
-END_TEST
 
 /* Near but transparent, then far away: nothing is lost that pushed. */
-START_TEST(test_ends_transparent) {
+TEST(test_ends_transparent) {
   rig r;
   open_with(&r, RIG_WALL, &ethd_transition_offset);
   motion m = rig_at(0.001, 0.01, 0);
@@ -49,10 +48,9 @@ START_TEST(test_ends_transparent) {
   ck_assert_uint_eq(lost(&r), 0);
   rig_close(&r);
 }
-END_TEST
 
 /* Eight walls are met; then two more that are deeper, and two that are shallower and new: the deepest eight stay. */
-START_TEST(test_newcomers_on_both_sides) {
+TEST(test_newcomers_on_both_sides) {
   char text[2048];
   size_t n = 0;
   for (int i = 0; i < 8; i++)
@@ -71,12 +69,11 @@ START_TEST(test_newcomers_on_both_sides) {
   ck_assert_double_eq_tol(t->fe[0], 2500 * (6 * 0.001 - 1e-4 * (5 * 6 / 2)), 1e-9);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- swaps ---- */
 
 /* In the wall, at a tick that can't be measured: the new law begins anew, and does its work at the next. */
-START_TEST(test_swap_without_measurement) {
+TEST(test_swap_without_measurement) {
   rig r;
   open_with(&r, RIG_WALL, &ethd_transition_smooth);
   r.setup.limits.latch = 0;
@@ -93,10 +90,9 @@ START_TEST(test_swap_without_measurement) {
   ck_assert(t->contacts == 1 && t->fault == 0);
   rig_close(&r);
 }
-END_TEST
 
 /* A law that was built before laws could adopt: in the wall it begins as on a new contact. */
-START_TEST(test_swap_to_an_older_law) {
+TEST(test_swap_to_an_older_law) {
   ethd_transition_law old = ethd_transition_offset;
   old.law.size = ETHD_TRANSITION_LAW_MIN;
   rig r, other;
@@ -116,11 +112,10 @@ START_TEST(test_swap_to_an_older_law) {
   rig_close(&r);
   rig_close(&other);
 }
-END_TEST
 
 /* ---- limits ---- */
 
-START_TEST(test_reach) {
+TEST(test_reach) {
   rig r;
   rig_open(&r, NULL);
   r.setup.limits.reach[0] = 0.3;
@@ -137,10 +132,9 @@ START_TEST(test_reach) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* At the base itself a wall of the reach has no direction to push in. */
-START_TEST(test_wall_at_the_base) {
+TEST(test_wall_at_the_base) {
   const ethd_pose pose = {{0, 0}, {0.25, 0, 0, 0.25}, {4, 0, 0, 4}};
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s;
@@ -153,10 +147,9 @@ START_TEST(test_wall_at_the_base) {
   ethd_guard_step(&l, &device, &s, &there, tau);
   ck_assert(tau[0] == 0.1 && tau[1] == -0.2);
 }
-END_TEST
 
 /* The stop needs no torque of joint 1 when that joint stands still: not safe while joint 2 brakes. */
-START_TEST(test_stop_of_one_joint) {
+TEST(test_stop_of_one_joint) {
   rig r;
   rig_open(&r, NULL);
   r.setup.arm = (ethd_arm){ETHD_ARM_PARALLEL, 0.25, 0.25};
@@ -169,13 +162,12 @@ START_TEST(test_stop_of_one_joint) {
   ck_assert(r.command.torque[1] != 0 && r.command.safe == 0);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- readings ---- */
 
 /* Ticks that say that a million periods were missed, with a reading each: whatever the filter makes of it, ring and
    finger stay numbers, and the torque is one. */
-START_TEST(test_gaps_without_end) {
+TEST_LOOP(test_gaps_without_end, 0, ETHD_FILTER_COUNT) {
   rig r;
   rig_open(&r, RIG_WALL);
   ethd_setup_filter(&r.setup, (ethd_filter_method)_i);
@@ -193,21 +185,4 @@ START_TEST(test_gaps_without_end) {
   }
   ck_assert_int_eq(r.trace.fault, 0);
   rig_close(&r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("control rare");
-  TCase *t = tcase_create("control rare");
-  tcase_add_test(t, test_two_become_one);
-  tcase_add_test(t, test_ends_transparent);
-  tcase_add_test(t, test_newcomers_on_both_sides);
-  tcase_add_test(t, test_swap_without_measurement);
-  tcase_add_test(t, test_swap_to_an_older_law);
-  tcase_add_test(t, test_reach);
-  tcase_add_test(t, test_wall_at_the_base);
-  tcase_add_test(t, test_stop_of_one_joint);
-  tcase_add_loop_test(t, test_gaps_without_end, 0, ETHD_FILTER_COUNT);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -1,6 +1,5 @@
 /* Encoders behind the kernel's counters, with a stand-in for the kernel. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "unit/mock_counter.h"
@@ -40,7 +39,7 @@ static ethd_sense sample(void *device, int64_t ms, ethd_status expected) {
 
 /* ---- angles ---- */
 
-START_TEST(test_counts_become_angles) {
+TEST(test_counts_become_angles) {
   mock_counter_install();
   void *d = open_with((const char *const[]){"offset1", "0.5", "sign2", "-1", NULL});
   ck_assert_int_eq(D.start(d), ETHD_OK);
@@ -60,19 +59,17 @@ START_TEST(test_counts_become_angles) {
   D.close(d);
   ck_assert_int_eq(counter_mock.open_files, 0);
 }
-END_TEST
 
-START_TEST(test_two_devices) {
+TEST(test_two_devices) {
   mock_counter_install();
   void *d = open_with((const char *const[]){"device2", "/dev/counter1", "count2", "0", NULL});
   ck_assert_int_eq(counter_mock.open_files, 4);
   D.close(d);
   ck_assert(counter_mock.open_files == 0 && !counter_mock.enabled);
 }
-END_TEST
 
 /* A count of 10 bits comes round every 1024. */
-START_TEST(test_ceiling_of_the_kernel) {
+TEST(test_ceiling_of_the_kernel) {
   mock_counter_install();
   for (int j = 0; j < 2; j++) strcpy(counter_mock.ceiling[j], "1023");
   void *d = open_with((const char *const[]){"speed_max", "20", NULL});
@@ -88,7 +85,6 @@ START_TEST(test_ceiling_of_the_kernel) {
   ck_assert_msg(strstr(message, "speed_max"), "%s", message);
   ck_assert_int_eq(counter_mock.open_files, 0);
 }
-END_TEST
 
 /* ---- index and edges ---- */
 
@@ -102,7 +98,7 @@ static void turn_by_hand(int64_t ns) {
   if (homing == 200) mock_counter_event(COUNTER_EVENT_INDEX, 1, 3390, 0);
 }
 
-START_TEST(test_homing) {
+TEST(test_homing) {
   mock_counter_install();
   void *d = open_with((const char *const[]){"home", "yes", "offset1", "0.25", NULL});
   ck_assert_uint_eq(counter_mock.watch_count, 2);
@@ -128,19 +124,17 @@ START_TEST(test_homing) {
   ck_assert_msg(strstr(D.remark(d, 0), "index marks"), "%s", D.remark(d, 0));
   D.close(d);
 }
-END_TEST
 
-START_TEST(test_homing_takes_too_long) {
+TEST(test_homing_takes_too_long) {
   mock_counter_install();
   void *d = open_with((const char *const[]){"home", "yes", "home_time", "0.5", NULL});
   ck_assert_int_eq(D.start(d), ETHD_E_DEVICE);
   ck_assert_int_eq(counter_mock.pauses, 500);
   D.close(d);
 }
-END_TEST
 
 /* A steady 0.9 edges in a ms: the speed is known to the ns, not to a count in a ms. */
-START_TEST(test_stamps) {
+TEST(test_stamps) {
   mock_counter_install();
   void *d = open_with((const char *const[]){"stamps", "yes", NULL});
   ck_assert_uint_eq(counter_mock.watch_count, 4);
@@ -161,11 +155,10 @@ START_TEST(test_stamps) {
     ck_assert_double_le(fabs(sample(d, ms, ETHD_OK).dq[0]), PER_COUNT / (1e-3 * (ms - 199)));
   D.close(d);
 }
-END_TEST
 
 /* ---- what goes wrong ---- */
 
-START_TEST(test_gone) {
+TEST(test_gone) {
   mock_counter_install();
   void *d = open_with((const char *const[]){NULL});
   sample(d, 1, ETHD_OK);
@@ -179,10 +172,9 @@ START_TEST(test_gone) {
   ck_assert_double_eq(f[2].value, 2);
   D.close(d);
 }
-END_TEST
 
 /* A counter that was reset: a jump, and another one; the next start takes it as it is. */
-START_TEST(test_reset_counter) {
+TEST(test_reset_counter) {
   mock_counter_install();
   void *d = open_with((const char *const[]){NULL});
   counter_mock.count[0] = 5000;
@@ -198,10 +190,9 @@ START_TEST(test_reset_counter) {
   ck_assert(s.faults == 0 && s.q[0] == 0);
   D.close(d);
 }
-END_TEST
 
 /* A joint that stands under a changed torque is frozen, but not once the device has let go of the torque. */
-START_TEST(test_frozen_only_under_torque) {
+TEST(test_frozen_only_under_torque) {
   int64_t seen[2] = {0, 0};
   mock_counter_install();
   for (int is_safe = 0; is_safe < 2; is_safe++) {
@@ -219,7 +210,6 @@ START_TEST(test_frozen_only_under_torque) {
   ck_assert_int_eq(seen[0], ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_FROZEN));
   ck_assert_int_eq(seen[1], 0);
 }
-END_TEST
 
 static const struct {
   const char *key, *value, *says;
@@ -239,7 +229,7 @@ static const struct {
      "c.ini:7: device"},
 };
 
-START_TEST(test_refused) {
+TEST_LOOP(test_refused, 0, sizeof bad / sizeof *bad) {
   mock_counter_install();
   const ethd_setting s = {bad[_i].key, bad[_i].value, 7};
   char message[ETHD_MESSAGE_MAX];
@@ -248,7 +238,6 @@ START_TEST(test_refused) {
   ck_assert_msg(strstr(message, bad[_i].says), "%s", message);
   ck_assert(!d && counter_mock.open_files == 0);
 }
-END_TEST
 
 static ethd_status open_plain(const char *key, const char *value, char *message) {
   const ethd_setting s = {key, value, 7};
@@ -259,7 +248,7 @@ static ethd_status open_plain(const char *key, const char *value, char *message)
   return status;
 }
 
-START_TEST(test_kernel_disagrees) {
+TEST(test_kernel_disagrees) {
   char message[ETHD_MESSAGE_MAX];
   mock_counter_install();
   strcpy(counter_mock.function, "increase");
@@ -284,11 +273,10 @@ START_TEST(test_kernel_disagrees) {
   counter_mock.refuse_event = COUNTER_EVENT_CHANGE_OF_STATE;
   ck_assert_int_eq(open_plain("stamps", "yes", message), ETHD_E_DEVICE);
 }
-END_TEST
 
 /* Every driver of the kernel that can count an encoder does, whatever it says when it is loaded: a joint turns by half
    a radian, and back by a quarter below where it began. */
-START_TEST(test_drivers_of_the_kernel) {
+TEST_LOOP(test_drivers_of_the_kernel, 0, 5) {
   static const struct {
     const char *name, *width;
   } cases[] = {
@@ -311,10 +299,9 @@ START_TEST(test_drivers_of_the_kernel) {
   ck_assert_int_eq(faults, 0);
   D.close(d);
 }
-END_TEST
 
 /* Without a setting, too: a joint that stands under torque is a fault. */
-START_TEST(test_frozen_by_default) {
+TEST(test_frozen_by_default) {
   int64_t seen = 0;
   mock_counter_install();
   void *d = open_with((const char *const[]){NULL});
@@ -328,36 +315,13 @@ START_TEST(test_frozen_by_default) {
   ck_assert_int_eq(seen, ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_FROZEN));
   D.close(d);
 }
-END_TEST
 
 /* The kernel's own calls, where it has a counter or not. */
-START_TEST(test_this_machine) {
+TEST(test_this_machine) {
   ethd__counter_calls_now = &ethd__counter_kernel;
   const ethd_setting s = {"device", "/dev/counter97", 7};
   char message[ETHD_MESSAGE_MAX];
   void *d;
   ck_assert_int_eq(try(&s, 1, &d, message), ETHD_E_DEVICE);
   ck_assert_msg(strstr(message, "/dev/counter97: no such counter"), "%s", message);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("counter");
-  TCase *t = tcase_create("counter");
-  tcase_add_test(t, test_counts_become_angles);
-  tcase_add_test(t, test_two_devices);
-  tcase_add_test(t, test_frozen_only_under_torque);
-  tcase_add_test(t, test_ceiling_of_the_kernel);
-  tcase_add_test(t, test_homing);
-  tcase_add_test(t, test_homing_takes_too_long);
-  tcase_add_test(t, test_stamps);
-  tcase_add_test(t, test_gone);
-  tcase_add_test(t, test_reset_counter);
-  tcase_add_loop_test(t, test_refused, 0, sizeof bad / sizeof *bad);
-  tcase_add_test(t, test_kernel_disagrees);
-  tcase_add_loop_test(t, test_drivers_of_the_kernel, 0, 5);
-  tcase_add_test(t, test_frozen_by_default);
-  tcase_add_test(t, test_this_machine);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -31,7 +31,7 @@ static void expect(const char *key, const char *value, ethd_status expected, con
   ck_assert_int_eq(counter_mock.open_files, 0);
 }
 
-START_TEST(test_calls_that_fail) {
+TEST(test_calls_that_fail) {
   static const struct {
     mock_failure open, read, write;
     const char *function, *said;
@@ -67,17 +67,15 @@ START_TEST(test_calls_that_fail) {
     expect(NULL, NULL, ETHD_E_DEVICE, cases[i].said);
   }
 }
-END_TEST
 
-START_TEST(test_events_that_fail) {
+TEST(test_events_that_fail) {
   mock_counter_install();
   counter_mock.ioctl_reason = ENODEV;
   expect("home", "yes", ETHD_E_DEVICE, "/dev/counter0: events: No such device");
 }
-END_TEST
 
 /* A ceiling and a count that are no numbers. */
-START_TEST(test_texts_of_the_kernel) {
+TEST(test_texts_of_the_kernel) {
   static const char *const ceilings[] = {"-1", "abc", "12x", "99999999999999999999999"};
   for (size_t i = 0; i < sizeof ceilings / sizeof *ceilings; i++) {
     char said[ETHD_MESSAGE_MAX];
@@ -87,10 +85,9 @@ START_TEST(test_texts_of_the_kernel) {
     expect(NULL, NULL, ETHD_E_DEVICE, said);
   }
 }
-END_TEST
 
 /* A counter that can't count an encoder, or that stays off, is told apart from one that stands. */
-START_TEST(test_counters_that_do_not_count) {
+TEST(test_counters_that_do_not_count) {
   mock_counter_load("interrupt-cnt");
   expect(NULL, NULL, ETHD_E_DEVICE, SYS "0/function: quadrature x4: Permission denied");
   mock_counter_load("ftm-quaddec");
@@ -112,9 +109,8 @@ START_TEST(test_counters_that_do_not_count) {
   ck_assert_msg(try(NULL, NULL, &d) == ETHD_OK, "%s", message);
   D.close(d);
 }
-END_TEST
 
-START_TEST(test_settings_that_cannot_be) {
+TEST(test_settings_that_cannot_be) {
   static const struct {
     const char *key, *value, *said;
     ethd_status status;
@@ -135,10 +131,9 @@ START_TEST(test_settings_that_cannot_be) {
     expect(cases[i].key, cases[i].value, cases[i].status, cases[i].said);
   }
 }
-END_TEST
 
 /* What is switched off is said; an encoder whose marks are right has nothing to say. */
-START_TEST(test_remarks) {
+TEST(test_remarks) {
   void *d;
   mock_counter_install();
   ck_assert_int_eq(try(NULL, NULL, &d), ETHD_OK);
@@ -151,18 +146,4 @@ START_TEST(test_remarks) {
   ck_assert_str_eq(D.remark(d, 1), "counter.reverse_torque is inf: a reversed encoder isn't noticed");
   ck_assert_ptr_null(D.remark(d, 2));
   D.close(d);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("counter refused");
-  TCase *t = tcase_create("counter refused");
-  tcase_add_test(t, test_calls_that_fail);
-  tcase_add_test(t, test_events_that_fail);
-  tcase_add_test(t, test_texts_of_the_kernel);
-  tcase_add_test(t, test_counters_that_do_not_count);
-  tcase_add_test(t, test_settings_that_cannot_be);
-  tcase_add_test(t, test_remarks);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -1,5 +1,4 @@
 /* CSV files in and out. */
-#include <check.h>
 #include <fcntl.h>
 #include <math.h>
 #include <signal.h>
@@ -13,6 +12,7 @@
 #include "mutate.h"
 #include "text/csv.h"
 #include "text/text.h"
+#include "unit/suite.h"
 
 static char message[ETHD_MESSAGE_MAX];
 static char folder[] = "/tmp/ethd-csv-XXXXXX", path[64];
@@ -35,7 +35,7 @@ static void parse(const char *text, const char *const *wanted, ethd_csv *out) {
 
 /* ---- reading ---- */
 
-START_TEST(test_numbers) {
+TEST(test_numbers) {
   ethd_csv c;
   parse("t_s,x_m, y m \r\n0,-1.5,+2e-3\r\n.5,1.,nan\r\n1E+2,,  7\t\r\n", NULL, &c);
   static const double expected[] = {0, -1.5, 2e-3, 0.5, 1, NAN, 100, NAN, 7};
@@ -54,9 +54,8 @@ START_TEST(test_numbers) {
   ck_assert(c.rows == 1 && c.columns == 2 && ethd_csv_empty(&c, 0, 0) && c.values[1] == 1500);
   ethd_csv_free(&c);
 }
-END_TEST
 
-START_TEST(test_wanted_columns) {
+TEST(test_wanted_columns) {
   static const char *const wanted[] = {"b", "absent", "d", NULL};
   ethd_csv c;
   parse("\xef\xbb\xbf"
@@ -77,7 +76,6 @@ START_TEST(test_wanted_columns) {
   ck_assert_uint_eq(c.rows, 0);
   ethd_csv_free(&c);
 }
-END_TEST
 
 static const struct {
   const char *text, *says;
@@ -106,7 +104,7 @@ static const struct {
     {"a\tb\n1,5,5\t2\n", "x.csv:2: a: found \"1,5,5\""},
 };
 
-START_TEST(test_bad_texts) {
+TEST(test_bad_texts) {
   for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
     ethd_csv c;
     message[0] = 0;
@@ -119,20 +117,18 @@ START_TEST(test_bad_texts) {
   ck_assert_int_lt(ethd_csv_parse("a,b\n1,\0\n", 8, "x.csv", NULL, &c, message), 0);
   ck_assert_str_eq(message, "x.csv:2: a byte 0: this isn't text");
 }
-END_TEST
 
-START_TEST(test_files) {
+TEST(test_files) {
   ethd_csv c;
   ck_assert_int_eq(ethd_csv_read(path, &c, message), ETHD_E_FILE);
   ck_assert(strstr(message, "No such file or directory"));
   ck_assert_int_eq(ethd_csv_read(folder, &c, message), ETHD_E_FILE);
   ck_assert(strstr(message, "is a folder"));
 }
-END_TEST
 
 /* ---- writing ---- */
 
-START_TEST(test_round_trip) {
+TEST(test_round_trip) {
   static const double values[] = {0.1, -0.0, 1e-310, 1.7976931348623157e308, 123456789.123456789, 1.0 / 3};
   ethd_csv_out *out = ethd_csv_create(path, "a,b,c,d", message);
   ck_assert_ptr_nonnull(out);
@@ -153,7 +149,6 @@ START_TEST(test_round_trip) {
   }
   ethd_csv_free(&c);
 }
-END_TEST
 
 static void check_content(const char *expected) {
   char *text;
@@ -163,7 +158,7 @@ static void check_content(const char *expected) {
   free(text);
 }
 
-START_TEST(test_old_file_stays) {
+TEST(test_old_file_stays) {
   ck_assert_int_eq(ethd_text_write(path, "old", 3, message), ETHD_OK);
   ethd_csv_out *out = ethd_csv_create(path, "a,b", message);
   ethd_csv_number(out, 1);
@@ -181,18 +176,16 @@ START_TEST(test_old_file_stays) {
   ck_assert_int_eq(ethd_csv_close(out, message), ETHD_OK);
   check_content("a\n\"say \"\"a,b\"\" \"\n");
 }
-END_TEST
 
-START_TEST(test_no_place) {
+TEST(test_no_place) {
   ck_assert_ptr_null(ethd_csv_create("/nowhere/x.csv", "a", message));
   ck_assert_str_eq(message, "/nowhere/x.csv: No such file or directory");
   ck_assert_ptr_null(ethd_csv_create(folder, "a", message));
   ck_assert(strstr(message, "is a folder"));
 }
-END_TEST
 
 /* What isn't a file is written to, not replaced. */
-START_TEST(test_pipe) {
+TEST(test_pipe) {
   struct stat info;
   char got[4] = "";
   ck_assert_int_eq(mkfifo(path, 0600), 0);
@@ -204,10 +197,9 @@ START_TEST(test_pipe) {
   ck_assert(lstat(path, &info) == 0 && S_ISFIFO(info.st_mode));
   close(reader);
 }
-END_TEST
 
 /* No byte more fits: the old file stays, nothing is left beside it. */
-START_TEST(test_no_room) {
+TEST(test_no_room) {
   static char big[1 << 20];
   struct rlimit before, none;
   static const char *const sentences[] = {"File too large", "a write failed; is there room?"};
@@ -227,9 +219,8 @@ START_TEST(test_no_room) {
     check_content("old");
   }
 }
-END_TEST
 
-START_TEST(test_keeps_mode_and_link) {
+TEST(test_keeps_mode_and_link) {
   char link[80];
   struct stat info;
   snprintf(link, sizeof link, "%s/link", folder);
@@ -241,11 +232,10 @@ START_TEST(test_keeps_mode_and_link) {
   ck_assert(stat(path, &info) == 0 && (info.st_mode & 0777) == 0640);
   unlink(link);
 }
-END_TEST
 
 /* ---- whatever comes ---- */
 
-START_TEST(test_mutations) {
+TEST(test_mutations) {
   static const char *const words[] = {",", "\n", "\"", "nan", "inf", "-", "1e5", "\r\n", "a", "\n\n", ",,", " ", NULL};
   static const char seed[] = "t_s,q1_rad,q2_rad,note\n0,0.5,1e-3,\"a,b\"\n0.001,,nan,c\r\n0.002,-1.25,+4,\n";
   static const char *const wanted[] = {"t_s", "q1_rad", NULL};
@@ -267,9 +257,8 @@ START_TEST(test_mutations) {
   }
   ck_assert_int_gt(accepted, 1000);
 }
-END_TEST
 
-START_TEST(test_number) {
+TEST(test_number) {
   static const char *const good[] = {"0", "-0", "+1", "1.", ".1", "1e5", "1E-5", "inf", "-INF", "+inf", "nan", "00012"};
   static const char *const bad[] = {"",        "+",   "-",        ".",    "e5",     "1e",      "1e+", "1e5.",
                                     "0x1",     "1f",  "infinity", "-nan", "nan(1)", " 1",      "1 ",  "1_0",
@@ -280,29 +269,5 @@ START_TEST(test_number) {
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
     ck_assert_msg(!ethd__number(bad[i], strlen(bad[i]), &value), "%s", bad[i]);
 }
-END_TEST
 
-int main(void) {
-  Suite *suite = suite_create("csv");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_checked_fixture(all, set_up, tear_down);
-  tcase_add_test(all, test_numbers);
-  tcase_add_test(all, test_wanted_columns);
-  tcase_add_test(all, test_bad_texts);
-  tcase_add_test(all, test_files);
-  tcase_add_test(all, test_round_trip);
-  tcase_add_test(all, test_old_file_stays);
-  tcase_add_test(all, test_no_place);
-  tcase_add_test(all, test_pipe);
-  tcase_add_test(all, test_no_room);
-  tcase_add_test(all, test_keeps_mode_and_link);
-  tcase_add_test(all, test_mutations);
-  tcase_add_test(all, test_number);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
-}
+FIXTURE(set_up, tear_down)

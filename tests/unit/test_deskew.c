@@ -77,7 +77,7 @@ static double error_of(const swing *s, ethd_fit_method fit, const double lag[ETH
   return sqrt(sum / (double)count);
 }
 
-START_TEST(test_gain) {
+TEST(test_gain) {
   static const struct {
     swing swing;
     const char *what;
@@ -99,10 +99,9 @@ START_TEST(test_gain) {
       ck_assert_double_le(with, rows[i].most[boards] * without);
     }
 }
-END_TEST
 
 /* What is left is noise, for every fit; a single late ray does no harm either. */
-START_TEST(test_every_fit) {
+TEST(test_every_fit) {
   static const double one[ETHD_RAYS] = {[5] = 3e-3};
   static const swing still = {0.1, 0.4, 0, 0}, moving = {0.1, 0.4, 3.5e-3, 0.4};
   double lag[ETHD_RAYS];
@@ -117,9 +116,8 @@ START_TEST(test_every_fit) {
     ck_assert_double_le(error_of(&moving, (ethd_fit_method)fit, one, 1), least + 0.15e-3);
   }
 }
-END_TEST
 
-START_TEST(test_checked) {
+TEST(test_checked) {
   ethd_setup setup = ethd_setup_default();
   ethd_error error;
   static const double bad[] = {0.0101, -0.0101, (double)INFINITY, (double)NAN};
@@ -131,13 +129,12 @@ START_TEST(test_checked) {
   }
   ck_assert_int_eq(ethd_setup_check(&setup, &error), ETHD_OK);
 }
-END_TEST
 
 static ethd_status parse(const char *text, ethd_config **out, char *message) {
   return ethd_config_parse(text, strlen(text), "x.ini", NULL, out, message);
 }
 
-START_TEST(test_configured) {
+TEST(test_configured) {
   char message[ETHD_MESSAGE_MAX];
   ethd_config *config;
   ck_assert_int_eq(parse("[finger_fit]\nlag = 0 1e-3 2e-3 -1e-3 0 0 0 0 0 0 0 0 0 0 0 -0.01\n", &config, message),
@@ -150,17 +147,4 @@ START_TEST(test_configured) {
                    "x.ini:2: finger_fit.lag: found \"0 1e-3\", a time in s for each of the 16 rays is allowed");
   ck_assert_int_lt(parse("\n[finger_fit]\nlag = 0 0 0 0 0 0 0 0.02 0 0 0 0 0 0 0 0\n", &config, message), 0);
   ck_assert_str_eq(message, "x.ini:3: finger_fit.lag: found 0.02, -0.01 to 0.01 s is allowed");
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("deskew");
-  TCase *tc = tcase_create("deskew");
-  tcase_set_timeout(tc, 60);
-  tcase_add_test(tc, test_gain);
-  tcase_add_test(tc, test_every_fit);
-  tcase_add_test(tc, test_checked);
-  tcase_add_test(tc, test_configured);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }

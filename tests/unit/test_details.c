@@ -18,7 +18,7 @@ static ethd_status parse(const char *text) {
   return status;
 }
 
-START_TEST(test_words_that_are_no_numbers) {
+TEST(test_words_that_are_no_numbers) {
   const char *const words[] = {"1+5", "15A3", "1#", "1d5", "1E", "1e+", "e5", ".e1", "-", "+", "-.", "1e5.", "1\x02"};
   char text[64];
   for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
@@ -31,9 +31,8 @@ START_TEST(test_words_that_are_no_numbers) {
                    ETHD_E_UNKNOWN);
   ck_assert_int_eq(parse("circle 0\b0 1"), ETHD_E_SYNTAX);
 }
-END_TEST
 
-START_TEST(test_exponents) {
+TEST(test_exponents) {
   static const struct {
     const char *text;
     double value;
@@ -49,10 +48,9 @@ START_TEST(test_exponents) {
     ethd_scene_destroy(scene);
   }
 }
-END_TEST
 
 /* What an error says of numbers: what was found, and what is allowed. */
-START_TEST(test_errors_say_numbers) {
+TEST(test_errors_say_numbers) {
   char text[8192] = "material m";
   for (int i = 0; i <= ETHD_PARAMS_MAX; i++) snprintf(text + strlen(text), 16, " k%d=1", i);
   ck_assert_int_eq(parse(text), ETHD_E_FULL);
@@ -69,21 +67,19 @@ START_TEST(test_errors_say_numbers) {
   ck_assert_int_eq(parse("halfplane 1 1 0"), ETHD_E_RANGE);
   ck_assert(error.found == sqrt(2) && error.min == 1 - 1e-6 && error.max == 1 + 1e-6);
 }
-END_TEST
 
 /* A polygon that comes to a point twice: the message names both visits. */
-START_TEST(test_same_point_twice) {
+TEST(test_same_point_twice) {
   const double p[] = {0, 0, 2, 0, 1, 1, 2, 2, 0, 2, 1, 1};
   char room[1024];
   size_t meet[2] = {99, 99};
   ck_assert(!ethd__is_simple(p, 6, room, meet));
   ck_assert((meet[0] == 2 && meet[1] == 5) || (meet[0] == 5 && meet[1] == 2));
 }
-END_TEST
 
 /* ---- ranges ---- */
 
-START_TEST(test_bounds_of_numbers) {
+TEST(test_bounds_of_numbers) {
   static const struct {
     const char *name;
     double most;
@@ -98,7 +94,6 @@ START_TEST(test_bounds_of_numbers) {
   ck_assert_int_eq(ethd_velocity_prepare(s.velocity, s.velocity_p, 1.05, &v, &error), ETHD_E_RANGE);
   ck_assert(error.max == 1 && error.min == 1e-6);
 }
-END_TEST
 
 /* ---- a tick ---- */
 
@@ -110,7 +105,7 @@ static ethd_sense sense_at(const rig *r, double d) {
 }
 
 /* Each number of a body's pose is looked at; so is each joint's range, on both sides. */
-START_TEST(test_every_number_is_looked_at) {
+TEST(test_every_number_is_looked_at) {
   for (int k = 0; k < 6; k++) {
     rig r;
     rig_open(&r, NULL);
@@ -138,7 +133,6 @@ START_TEST(test_every_number_is_looked_at) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* ---- which law runs ---- */
 
@@ -159,7 +153,7 @@ static ethd_status push(const double *p, void *state, double gap, double speed, 
   return ETHD_OK;
 }
 
-START_TEST(test_law_of_each_kind) {
+TEST(test_law_of_each_kind) {
   ethd_transition_law ruling = ethd_transition_smooth;
   ethd_contact_law pushing = ethd_contact_spring;
   ruling.step = rule;
@@ -177,12 +171,11 @@ START_TEST(test_law_of_each_kind) {
   ck_assert_ptr_eq(answers[1], &pushing.law);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- the finger's fit ---- */
 
 /* A polygon far from its first vertex's middle is judged by its area over its extent: a sliver is none. */
-START_TEST(test_slivers) {
+TEST(test_slivers) {
   ethd_fit fit;
   ethd_setup s = ethd_setup_default();
   ck_assert_int_eq(ethd_fit_prepare(ETHD_FIT_CENTROID, s.fit_p, 0.012, 0.0075, &fit, NULL), ETHD_OK);
@@ -194,20 +187,4 @@ START_TEST(test_slivers) {
   ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STATUS_STALE);
   r[4] = 0.0045;
   ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("details");
-  TCase *t = tcase_create("details");
-  tcase_add_test(t, test_words_that_are_no_numbers);
-  tcase_add_test(t, test_exponents);
-  tcase_add_test(t, test_errors_say_numbers);
-  tcase_add_test(t, test_same_point_twice);
-  tcase_add_test(t, test_bounds_of_numbers);
-  tcase_add_test(t, test_every_number_is_looked_at);
-  tcase_add_test(t, test_law_of_each_kind);
-  tcase_add_test(t, test_slivers);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

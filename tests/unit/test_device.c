@@ -1,5 +1,4 @@
 /* Several drivers behind one device: names, whose keys are whose, order, what is read and written. */
-#include <check.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -8,6 +7,7 @@
 
 #include "ethd/control.h"
 #include "ethd/driver.h"
+#include "unit/suite.h"
 
 typedef struct part {
   char name;
@@ -123,15 +123,14 @@ static ethd_status try(const char *ids, const char *k0, const char *k1) {
   return ethd_device_open(ids, both, &def, &driver, &device, message);
 }
 
-START_TEST(test_alone) {
+TEST(test_alone) {
   ck_assert_int_eq(try("b", "b.port", "speed"), ETHD_OK);
   ck_assert_str_eq(keys[0], "port");
   ck_assert_str_eq(keys[1], "speed");
   driver->close(device);
 }
-END_TEST
 
-START_TEST(test_two) {
+TEST(test_two) {
   ethd_sense s = {0};
   ethd_command c = {0};
   ethd_figure f[3];
@@ -153,10 +152,9 @@ START_TEST(test_two) {
   driver->close(device);
   ck_assert_str_eq(log_, "oaobsbsawa0a0b1bxaxbtatbcbca");
 }
-END_TEST
 
 /* A start that fails leaves nothing started; an open that fails nothing open. */
-START_TEST(test_undone) {
+TEST(test_undone) {
   ck_assert_int_eq(try("a,b", NULL, NULL), ETHD_OK);
   fail_start = 1;
   ck_assert_int_eq(driver->start(device), ETHD_E_DEVICE);
@@ -169,7 +167,6 @@ START_TEST(test_undone) {
   ck_assert_int_eq(try("a,b", "b.mute", NULL), ETHD_E_DEVICE);
   ck_assert_str_eq(message, "device b: open: the device refused or failed");
 }
-END_TEST
 
 /* What a driver hasn't is nothing: to do, to read, to limit; and a device has it all the same. */
 static ethd_driver bare;
@@ -182,7 +179,7 @@ static ethd_status open_bare(const char *ids) {
   return ethd_device_open(ids, only_bare, &def, &driver, &device, message);
 }
 
-START_TEST(test_bare) {
+TEST(test_bare) {
   const ethd_limits none = ethd_limits_none();
   ethd_sense s = {0};
   ethd_command c = {0};
@@ -217,10 +214,9 @@ START_TEST(test_bare) {
   ck_assert_int_eq(open_bare("bare"), ETHD_E_ARGUMENT);
   ck_assert_msg(strstr(message, "bare takes torque and has no safe") != NULL, "%s", message);
 }
-END_TEST
 
 /* A child made by fork closes its copy of a device, and no driver hears of it. */
-START_TEST(test_forked) {
+TEST(test_forked) {
   int status;
   bare = (ethd_driver){
       .size = sizeof bare, .abi = ETHD_DRIVER_ABI, .id = "bare", .brief = "bare", .open = open_b, .close = close_part};
@@ -240,7 +236,6 @@ START_TEST(test_forked) {
   ck_assert_int_eq(driver->stop(device), ETHD_OK);
   driver->close(device);
 }
-END_TEST
 
 /* ---- settings by a driver's own table ---- */
 
@@ -263,7 +258,7 @@ static const struct {
 
 /* A table of the first header of this ABI, at the end of a page before one that can't be read: nothing behind its last
    field is looked at. */
-START_TEST(test_short_table) {
+TEST(test_short_table) {
   const size_t page = (size_t)sysconf(_SC_PAGESIZE);
   char *at = mmap(NULL, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   ck_assert(at != MAP_FAILED);
@@ -285,9 +280,8 @@ START_TEST(test_short_table) {
   }
   munmap(at, 2 * page);
 }
-END_TEST
 
-START_TEST(test_settings) {
+TEST_LOOP(test_settings, 0, sizeof settings / sizeof *settings) {
   const ethd_setting one = {settings[_i].key, settings[_i].value, 7}, *text[2] = {NULL, NULL};
   const ethd_setup setup = ethd_setup_default();
   const ethd_device_def def = {&setup, &one, 1, ".", "c.ini", 1};
@@ -300,9 +294,8 @@ START_TEST(test_settings) {
   ck_assert(values[0] == (_i == 0 ? 1.5 : -1) && values[1] == (_i == 1 ? 1 : -2));
   ck_assert(text[0] == NULL && text[1] == (_i == 2 ? &one : NULL));
 }
-END_TEST
 
-START_TEST(test_refused) {
+TEST(test_refused) {
   static const struct {
     const char *ids, *key;
     ethd_status status;
@@ -326,24 +319,4 @@ START_TEST(test_refused) {
     ck_assert_msg(strstr(message, bad[i].says) != NULL, "%s", message);
     ck_assert(driver == NULL && device == NULL);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("device");
-  TCase *tests = tcase_create("device");
-  tcase_add_test(tests, test_alone);
-  tcase_add_test(tests, test_short_table);
-  tcase_add_test(tests, test_two);
-  tcase_add_test(tests, test_undone);
-  tcase_add_test(tests, test_bare);
-  tcase_add_test(tests, test_forked);
-  tcase_add_loop_test(tests, test_settings, 0, sizeof settings / sizeof *settings);
-  tcase_add_test(tests, test_refused);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed != 0;
 }

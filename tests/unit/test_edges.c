@@ -15,7 +15,7 @@ static ethd_error error;
 
 /* Two bodies share a scene; when it is replaced it comes back once, for the first of them, or it would be freed
    twice. */
-START_TEST(test_shared_scene_comes_back_once) {
+TEST(test_shared_scene_comes_back_once) {
   rig r;
   rig_open(&r, RIG_WALL);
   ethd_scene *shared = rig_scene("circle 0 0 0.01\n");
@@ -35,10 +35,9 @@ START_TEST(test_shared_scene_comes_back_once) {
   ethd_scene_destroy(shared);
   rig_close(&r);
 }
-END_TEST
 
 /* A step of exactly limits.step_time is in time; one of a nanosecond more isn't. */
-START_TEST(test_step_time_to_the_nanosecond) {
+TEST(test_step_time_to_the_nanosecond) {
   for (int late = 0; late < 2; late++) {
     rig r;
     rig_open(&r, NULL);
@@ -52,10 +51,9 @@ START_TEST(test_step_time_to_the_nanosecond) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* Torque that a row takes away is zero in the trace, too: not nearly so. */
-START_TEST(test_raw_torque_is_zero) {
+TEST(test_raw_torque_is_zero) {
   rig r;
   rig_open(&r, RIG_WALL);
   rig_start(&r);
@@ -69,26 +67,23 @@ START_TEST(test_raw_torque_is_zero) {
   ck_assert(r.command.torque[0] == 0 && r.command.torque[1] == 0);
   rig_close(&r);
 }
-END_TEST
 
-START_TEST(test_setup_that_nobody_made) {
+TEST(test_setup_that_nobody_made) {
   ethd_setup setup;
   memset(&setup, 0, sizeof setup);
   ck_assert_int_eq(ethd_setup_set(&setup, "ring.radius", 0.01, &error), ETHD_E_ARGUMENT);
   ck_assert_msg(strstr(error.name, "ethd_setup_default") != NULL, "%s", error.name);
 }
-END_TEST
 
 /* Built-in laws are called directly, all of them; a copy is foreign. */
-START_TEST(test_whose_law_it_is) {
+TEST(test_whose_law_it_is) {
   const ethd_contact_law copy = ethd_contact_spring;
   for (const ethd_law *const *law = ethd_laws; *law; law++) ck_assert(!ethd__law_is_foreign(*law));
   ck_assert(ethd__law_is_foreign(&copy.law));
 }
-END_TEST
 
 /* Whichever block's law hangs, it is named. */
-START_TEST(test_each_block_says_whose_law_runs) {
+TEST(test_each_block_says_whose_law_runs) {
   static ethd__state state;
   const ethd_law *const law = &ethd_contact_spring.law;
   ck_assert_ptr_null(ethd__fence_runs(&state));
@@ -102,12 +97,11 @@ START_TEST(test_each_block_says_whose_law_runs) {
     ck_assert_ptr_null(ethd__fence_runs(&state));
   }
 }
-END_TEST
 
 /* ---- laws, limits, estimators ---- */
 
 /* offset takes a wall over when the ring rests there: slower than v_th, or at the wall for 50 ms. */
-START_TEST(test_what_offset_adopts) {
+TEST(test_what_offset_adopts) {
   static const struct {
     double v, since;
     int is_adopted;
@@ -125,10 +119,9 @@ START_TEST(test_what_offset_adopts) {
     ck_assert_msg((out.state == ETHD_VO) == cases[i].is_adopted, "%zu: state %d", i, out.state);
   }
 }
-END_TEST
 
 /* Of two clean times the longer one is narrower, of two ages the shorter one. */
-START_TEST(test_narrower) {
+TEST(test_narrower) {
   ethd_limits a = ethd_limits_none(), b = ethd_limits_none();
   a.clean_time = 1, b.clean_time = 2;
   a.finger_age = 0.01, b.finger_age = 0.02;
@@ -137,10 +130,9 @@ START_TEST(test_narrower) {
   const ethd_limits c = ethd_limits_narrower(&a, &b);
   ck_assert(c.clean_time == 2 && c.finger_age == 0.01 && c.workspace[0] == -1 && c.workspace[1] == 1);
 }
-END_TEST
 
 /* A filter that begins anew knows nothing of the acceleration before, along neither axis. */
-START_TEST(test_filter_forgets_acceleration) {
+TEST(test_filter_forgets_acceleration) {
   ethd_filter filter;
   ethd_filter_state s;
   double p[ETHD_PARAMS_MAX];
@@ -152,7 +144,6 @@ START_TEST(test_filter_forgets_acceleration) {
   ethd_filter_start(&filter, &s, (ethd_vec){0.1, 0.2}, (ethd_vec){0, 0});
   ck_assert(s.a[0] == 0 && s.a[1] == 0);
 }
-END_TEST
 
 /* ---- scenes ---- */
 
@@ -170,13 +161,12 @@ static ethd_status parse(const char *text) {
 }
 
 /* What a message repeats of a file steers no terminal. */
-START_TEST(test_word_in_a_message) {
+TEST(test_word_in_a_message) {
   ck_assert_int_eq(parse("cir\033[2Jcle 0 0 1"), ETHD_E_UNKNOWN);
   ck_assert_str_eq(error.name, "cir?[2Jcle");
 }
-END_TEST
 
-START_TEST(test_names_of_materials) {
+TEST(test_names_of_materials) {
   static const char *const refused[] = {"a+b", "a!b", "a(b", "a,b", "a'b", "a/b", "a:b", "a@b", "a[b", "a`b", "a{b"};
   char text[64];
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
@@ -185,11 +175,10 @@ START_TEST(test_names_of_materials) {
   }
   ck_assert_int_eq(parse("material aZ0_-.9 k_e=1\ncircle 0 0 1\n"), ETHD_OK);
 }
-END_TEST
 
 /* From whichever corner a polygon is told and in either sense, inside is inside; three corners in a line at its
    left. */
-START_TEST(test_polygon_from_every_corner) {
+TEST(test_polygon_from_every_corner) {
   static const double p[][2] = {{0, 0}, {0, -1}, {3, -2}, {2, 0}, {3, 2}, {0, 1}};
   enum { N = sizeof p / sizeof *p };
   for (int first = 0; first < N; first++)
@@ -209,19 +198,17 @@ START_TEST(test_polygon_from_every_corner) {
       ethd_scene_destroy(s);
     }
 }
-END_TEST
 
 /* At the very centre of a circle any way out is as good, but it is one, of length 1. */
-START_TEST(test_centre_of_a_circle) {
+TEST(test_centre_of_a_circle) {
   ethd_scene *s = scene("circle 1 2 3");
   ethd_touch touch;
   ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){1, 2}, 5, &touch, 1), 1);
   ck_assert(touch.distance == -3 && ethd_vec_norm(touch.n) == 1);
   ethd_scene_destroy(s);
 }
-END_TEST
 
-START_TEST(test_material_that_is_missing) {
+TEST(test_material_that_is_missing) {
   const ethd_material one = {.name = "m"};
   ethd_object_def circle = {
       .shape = ETHD_SHAPE_CIRCLE, .material = 1, .numbers = (const double[]){0, 0, 1}, .count = 3};
@@ -230,12 +217,11 @@ START_TEST(test_material_that_is_missing) {
   ck_assert_int_eq(ethd_scene_create(&def, &out, &error), ETHD_E_RANGE);
   ck_assert(error.found == 1 && error.min == -1 && error.max == 0);
 }
-END_TEST
 
 /* ---- the ring's decoder ---- */
 
 /* Noise without a delimiter, in pieces: no more of it is held than a frame has. */
-START_TEST(test_noise_that_goes_on) {
+TEST(test_noise_that_goes_on) {
   ethd__decoder d = {0};
   ethd__ring_frame frame;
   uint8_t noise[ETHD__FRAME_WIRE];
@@ -245,27 +231,4 @@ START_TEST(test_noise_that_goes_on) {
     ck_assert(!ethd__decoder_next(&d, &at, noise + sizeof noise, &frame));
     ck_assert_uint_le(d.held, ETHD__FRAME_WIRE);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("edges");
-  TCase *t = tcase_create("edges");
-  tcase_add_test(t, test_shared_scene_comes_back_once);
-  tcase_add_test(t, test_step_time_to_the_nanosecond);
-  tcase_add_test(t, test_raw_torque_is_zero);
-  tcase_add_test(t, test_setup_that_nobody_made);
-  tcase_add_test(t, test_whose_law_it_is);
-  tcase_add_test(t, test_each_block_says_whose_law_runs);
-  tcase_add_test(t, test_what_offset_adopts);
-  tcase_add_test(t, test_narrower);
-  tcase_add_test(t, test_filter_forgets_acceleration);
-  tcase_add_test(t, test_word_in_a_message);
-  tcase_add_test(t, test_names_of_materials);
-  tcase_add_test(t, test_polygon_from_every_corner);
-  tcase_add_test(t, test_centre_of_a_circle);
-  tcase_add_test(t, test_material_that_is_missing);
-  tcase_add_test(t, test_noise_that_goes_on);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -5,6 +5,7 @@
 #include "draw.h"
 #include "encoder/unwrap.h"
 #include "rig.h"
+#include "unit/suite.h"
 
 #define MS 1000000
 #define BIT(name) ETHD_FAULT_BIT(ETHD_FAULT_##name)
@@ -43,7 +44,7 @@ static int64_t feed(track *k, int64_t position, double torque) {
 /* ---- unwrapping ---- */
 
 /* Any width, any step that is less than half way round. */
-START_TEST(test_widths) {
+TEST_LOOP(test_widths, 1, 65) {
   uint32_t width = (uint32_t)_i;
   track k = {.def = ordinary()};
   k.def.ceiling = ethd__count_ceiling(width);
@@ -57,10 +58,9 @@ START_TEST(test_widths) {
   }
   ck_assert_int_eq(k.seen, 0);
 }
-END_TEST
 
 /* A ceiling that is no power of two less one: 0 to 999. */
-START_TEST(test_any_ceiling) {
+TEST(test_any_ceiling) {
   track k = {.def = ordinary()};
   k.def.ceiling = 999;
   for (int64_t p = -5000; p < 5000; p += 7) {
@@ -70,9 +70,8 @@ START_TEST(test_any_ceiling) {
     ck_assert_int_eq(k.e.position, p + 5000);
   }
 }
-END_TEST
 
-START_TEST(test_angle) {
+TEST(test_angle) {
   track k = {.def = ordinary()};
   k.def.offset = 0.5;
   feed(&k, 0, NAN);
@@ -84,11 +83,10 @@ START_TEST(test_angle) {
   ck_assert_double_eq_tol(k.e.q, 0.5 - TURN * 4800 / 48000, 1e-15);
   ck_assert(!k.e.has_dq);
 }
-END_TEST
 
 /* ---- jumps ---- */
 
-START_TEST(test_one_jump_is_dropped) {
+TEST(test_one_jump_is_dropped) {
   track k = {.def = ordinary()};
   for (int i = 0; i < 50; i++) ck_assert_int_eq(feed(&k, 20 * i, NAN), 0);
   double before = k.e.q;
@@ -98,10 +96,9 @@ START_TEST(test_one_jump_is_dropped) {
   ck_assert_int_eq(k.e.position, 20 * 51);
   ck_assert_int_eq(k.grave, 0);
 }
-END_TEST
 
 /* A counter that was set anew jumps again at the next sample. */
-START_TEST(test_second_jump_is_grave) {
+TEST(test_second_jump_is_grave) {
   track k = {.def = ordinary()};
   for (int i = 0; i < 50; i++) feed(&k, 20 * i, NAN);
   feed(&k, 20000, NAN);
@@ -109,9 +106,8 @@ START_TEST(test_second_jump_is_grave) {
   ck_assert_int_eq(feed(&k, 20000, NAN), BIT(ENCODER_JUMP));
   ck_assert_int_eq(k.grave, BIT(ENCODER_JUMP));
 }
-END_TEST
 
-START_TEST(test_jumps_far_apart) {
+TEST(test_jumps_far_apart) {
   track k = {.def = ordinary()};
   for (int i = 0; i < 100; i++) feed(&k, i % 11 == 10 ? 9000 : 0, NAN);
   ck_assert_int_eq(k.seen, BIT(ENCODER_JUMP));
@@ -119,18 +115,16 @@ START_TEST(test_jumps_far_apart) {
   for (int i = 0; i < 20; i++) feed(&k, i % 10 == 9 ? 9000 : 0, NAN); /* 10 ms */
   ck_assert_int_eq(k.grave, BIT(ENCODER_JUMP));
 }
-END_TEST
 
 /* What was away for some samples may have gone further. */
-START_TEST(test_gap_is_no_jump) {
+TEST(test_gap_is_no_jump) {
   track k = {.def = ordinary()};
   feed(&k, 0, NAN);
   k.t += 9 * MS;
   ck_assert_int_eq(feed(&k, 700, NAN), 0);
 }
-END_TEST
 
-START_TEST(test_above_the_ceiling) {
+TEST(test_above_the_ceiling) {
   track k = {.def = ordinary()};
   k.def.ceiling = 9999;
   feed(&k, 0, NAN);
@@ -138,11 +132,10 @@ START_TEST(test_above_the_ceiling) {
   ethd__count s = {.time_ns = k.t, .raw = 10000};
   ck_assert_int_eq(ethd__encoder_step(&k.def, &k.e, &s, NAN, &k.grave), BIT(ENCODER_JUMP));
 }
-END_TEST
 
 /* ---- against the torque ---- */
 
-START_TEST(test_frozen) {
+TEST(test_frozen) {
   track k = {.def = ordinary()};
   for (int i = 0; i < 200; i++) ck_assert_int_eq(feed(&k, 0, 1.0), 0); /* pressed against a wall, and steady */
   for (int i = 0; i < 100; i++) ck_assert_int_eq(feed(&k, 0, 1.0 + (i % 2 ? 0.1 : -0.1)), 0);
@@ -153,7 +146,6 @@ START_TEST(test_frozen) {
   for (int i = 0; i < 100; i++) ck_assert_int_eq(feed(&k, 1, 1.5), 0);
   for (int i = 0; i < 100; i++) ck_assert_int_eq(feed(&k, 1, NAN), 0);
 }
-END_TEST
 
 /* A joint of 0.01 kg m^2 under a torque and a hand, its reading's sign; ms until the row is seen, -1: never. */
 static int drive(double torque, double hand, double v, int reading) {
@@ -168,7 +160,7 @@ static int drive(double torque, double hand, double v, int reading) {
   return -1;
 }
 
-START_TEST(test_reversed) {
+TEST(test_reversed) {
   for (double torque = 0.15; torque < 0.8; torque += 0.1) {
     int after = drive(torque, 0, 0, -1);
     ck_assert_msg(after >= 9 && after <= 20, "%g Nm: %d ms", torque, after);
@@ -179,7 +171,6 @@ START_TEST(test_reversed) {
   }
   ck_assert_int_eq(drive(0.09, 0, 0, -1), -1); /* too little to tell */
 }
-END_TEST
 
 /* ---- index marks ---- */
 
@@ -198,7 +189,7 @@ static int64_t turn_to(track *k, int64_t to) {
   return bits;
 }
 
-START_TEST(test_index_distances) {
+TEST(test_index_distances) {
   track k = {.def = ordinary()};
   feed(&k, 100, NAN);
   ck_assert_int_eq(pass(&k, 105, 103), 0);
@@ -214,10 +205,9 @@ START_TEST(test_index_distances) {
   ethd__encoder_restart(&k.e);
   ck_assert_int_eq(k.e.misindexed, 1);
 }
-END_TEST
 
 /* The home mark is a whole turn's, the one that is nearest to where the joint was said to be. */
-START_TEST(test_home) {
+TEST(test_home) {
   for (int64_t mark = -9000; mark < 9000; mark += 777) {
     track k = {.def = ordinary()};
     k.def.home = 1;
@@ -231,13 +221,12 @@ START_TEST(test_home) {
     ck_assert_double_eq_tol(k.e.q, 0.1 + (double)(mark + 5 - k.e.home) * TURN / 48000, 1e-12);
   }
 }
-END_TEST
 
 /* ---- speed from edges ---- */
 
 /* At 30 mm/s of the ring (0.12 rad/s, an edge in 1.1 ms), turning around and standing: the difference of counts
    is wrong by up to a count in a ms, 0.13 rad/s. */
-START_TEST(test_edges) {
+TEST(test_edges) {
   track k = {.def = ordinary()};
   k.def.stamps = 1;
   int64_t count = 0, edge = 0;
@@ -265,11 +254,10 @@ START_TEST(test_edges) {
   }
   ck_assert_double_eq(k.e.dq, 0);
 }
-END_TEST
 
 /* ---- checks of a definition ---- */
 
-START_TEST(test_check) {
+TEST(test_check) {
   ethd_error error;
   ethd__encoder_def d = ordinary();
   ck_assert_int_eq(ethd__encoder_check(&d, 0.001, &error), ETHD_OK);
@@ -288,26 +276,4 @@ START_TEST(test_check) {
   ck_assert_int_eq(ethd__encoder_check(&d, 0.001, NULL), ETHD_E_RANGE);
   d = ordinary(), d.freeze_torque = (double)INFINITY;
   ck_assert_int_eq(ethd__encoder_check(&d, 0.001, NULL), ETHD_OK);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("encoder");
-  TCase *t = tcase_create("encoder");
-  tcase_add_loop_test(t, test_widths, 1, 65);
-  tcase_add_test(t, test_any_ceiling);
-  tcase_add_test(t, test_angle);
-  tcase_add_test(t, test_one_jump_is_dropped);
-  tcase_add_test(t, test_second_jump_is_grave);
-  tcase_add_test(t, test_jumps_far_apart);
-  tcase_add_test(t, test_gap_is_no_jump);
-  tcase_add_test(t, test_above_the_ceiling);
-  tcase_add_test(t, test_frozen);
-  tcase_add_test(t, test_reversed);
-  tcase_add_test(t, test_index_distances);
-  tcase_add_test(t, test_home);
-  tcase_add_test(t, test_edges);
-  tcase_add_test(t, test_check);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

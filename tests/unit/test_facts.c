@@ -36,7 +36,7 @@ static motion finger_at(double x) { return (motion){{0.25, 0.25}, {0, 0}, {x, 0.
 
 /* From no torque, one tick's worth of the rate; then what stands is added where it already pushes out of the wall, and
    has to be undone where it pushes in. */
-START_TEST(test_rate) {
+TEST(test_rate) {
   for (int side = 0; side < 2; side++) {
     rig r;
     open_spied(&r);
@@ -58,10 +58,9 @@ START_TEST(test_rate) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* A motor that is hot has its nominal torque left. */
-START_TEST(test_heat) {
+TEST(test_heat) {
   rig r;
   open_spied(&r);
   r.setup.limits.nominal_torque = 0.4;
@@ -74,10 +73,9 @@ START_TEST(test_heat) {
   ck_assert_double_eq_tol(seen.force, 0.4 / LEVER, 0.02);
   rig_close(&r);
 }
-END_TEST
 
 /* Unequal joints: mass along n is that of the link that moves, for both directions. */
-START_TEST(test_mass_of_each_link) {
+TEST(test_mass_of_each_link) {
   const char *const walls[] = {RIG_WALL, "halfplane 0 -1 -0.238\n"};
   const double mass[] = {0.2, 0.7};
   for (int i = 0; i < 2; i++) {
@@ -93,10 +91,9 @@ START_TEST(test_mass_of_each_link) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* Links of other lengths: a mass at the end of each adds 1/m of its share of the way, sin^2 q along x. */
-START_TEST(test_mass_of_unequal_links) {
+TEST(test_mass_of_unequal_links) {
   const ethd_arm arms[] = {{ETHD_ARM_PARALLEL, 0.3, 0.2}, {ETHD_ARM_PARALLEL, 0.21, 0.34}};
   for (int i = 0; i < 2; i++) {
     rig r;
@@ -111,10 +108,9 @@ START_TEST(test_mass_of_unequal_links) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* The finger's acceleration is the filter's where it filters, along n, and only with a model that has one. */
-START_TEST(test_acceleration) {
+TEST(test_acceleration) {
   const struct {
     ethd_filter_method method;
     bool measured, known;
@@ -138,17 +134,4 @@ START_TEST(test_acceleration) {
     if (!cases[c].known) ck_assert(isnan(seen.finger_a));
     rig_close(&r);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("facts");
-  TCase *t = tcase_create("facts");
-  tcase_add_test(t, test_rate);
-  tcase_add_test(t, test_heat);
-  tcase_add_test(t, test_mass_of_each_link);
-  tcase_add_test(t, test_mass_of_unequal_links);
-  tcase_add_test(t, test_acceleration);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -47,7 +47,7 @@ static uint64_t counted(const finger *f, int row) {
 }
 
 /* Over 10 ms tracking fades in 20 ms, the wall stays; readings again: it comes back as softly. */
-START_TEST(test_old) {
+TEST(test_old) {
   finger f;
   open_finger(&f, 0.010, INFINITY);
   for (int i = 0; i < 60; i++) step(&f, 1, 0.01);
@@ -75,10 +75,9 @@ START_TEST(test_old) {
   ck_assert_int_eq(rig_poll(&f.r).kind, 0);
   rig_close(&f.r);
 }
-END_TEST
 
 /* Over 30 ms from the sample's instant: a stop, at the first tick, whether or not tracking fades before. */
-START_TEST(test_lost) {
+TEST_LOOP(test_lost, 0, 2) {
   finger f;
   open_finger(&f, _i ? INFINITY : 0.010, 0.030);
   for (int i = 0; i < 60; i++) step(&f, 1, 0.01);
@@ -91,10 +90,9 @@ START_TEST(test_lost) {
   moody_expect_safe(&f.r, ETHD_E_DEVICE, ETHD_FAULT_FINGER_LOST); /* at rest: nothing to damp */
   rig_close(&f.r);
 }
-END_TEST
 
 /* A finger that was never seen isn't missed, nor one that is known without readings, nor any without limit. */
-START_TEST(test_not_missed) {
+TEST(test_not_missed) {
   finger f;
   open_finger(&f, 0.010, 0.030);
   for (int i = 0; i < 100; i++) step(&f, 0, 0.01);
@@ -111,10 +109,9 @@ START_TEST(test_not_missed) {
   ck_assert(f.r.status == ETHD_OK && f.r.trace.beta == 1);
   rig_close(&f.r);
 }
-END_TEST
 
 /* Outside of the ring: dropped and counted, five in a row stop. */
-START_TEST(test_outside) {
+TEST(test_outside) {
   finger f;
   open_finger(&f, 0.010, 0.030);
   for (int i = 0; i < 60; i++) step(&f, 1, 0.01);
@@ -131,10 +128,9 @@ START_TEST(test_outside) {
   ck_assert(f.r.trace.fault == ETHD_FAULT_ESTIMATE && f.r.command.safe == 1);
   rig_close(&f.r);
 }
-END_TEST
 
 /* Within the ring, but no finger jumps so: the filter's gate. */
-START_TEST(test_gated) {
+TEST(test_gated) {
   finger f;
   open_finger(&f, 1, 1);
   step(&f, 0, 0.01);
@@ -148,17 +144,4 @@ START_TEST(test_gated) {
   for (int i = 0; i < 3; i++) step(&f, 1, 0.01);
   ck_assert_int_eq(f.r.trace.fault, ETHD_FAULT_ESTIMATE);
   rig_close(&f.r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("fault_finger");
-  TCase *t = tcase_create("fault_finger");
-  tcase_add_test(t, test_old);
-  tcase_add_loop_test(t, test_lost, 0, 2);
-  tcase_add_test(t, test_not_missed);
-  tcase_add_test(t, test_outside);
-  tcase_add_test(t, test_gated);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

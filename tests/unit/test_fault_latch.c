@@ -4,7 +4,7 @@
 
 #include "unit/moody.h"
 
-START_TEST(test_latched_until_cleared) {
+TEST(test_latched_until_cleared) {
   rig r;
   ethd_counters c;
   moody_open(&r, 1);
@@ -39,10 +39,9 @@ START_TEST(test_latched_until_cleared) {
   ck_assert_int_eq(rig_poll(&r).kind, 0);
   rig_close(&r);
 }
-END_TEST
 
 /* Cleared while it lasts: it comes back at once. */
-START_TEST(test_cleared_too_early) {
+TEST(test_cleared_too_early) {
   rig r;
   moody_open(&r, 1);
   ethd_sense s = moody_sense(&r);
@@ -64,10 +63,9 @@ START_TEST(test_cleared_too_early) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* A setup posted while a fault is latched is taken; the fault stays until it is cleared. */
-START_TEST(test_post_during_a_fault) {
+TEST(test_post_during_a_fault) {
   rig r;
   moody_open(&r, 1);
   ethd_sense s = moody_sense(&r);
@@ -97,10 +95,9 @@ START_TEST(test_post_during_a_fault) {
   rig_close(&fresh);
   rig_close(&r);
 }
-END_TEST
 
 /* After it, contacts begin anew: braking, not the wall of before. */
-START_TEST(test_contacts_begin_anew) {
+TEST(test_contacts_begin_anew) {
   rig r;
   moody_open(&r, 1);
   ethd_setup_transition(&r.setup, &ethd_transition_offset);
@@ -116,10 +113,9 @@ START_TEST(test_contacts_begin_anew) {
   ck_assert_int_eq(r.trace.state, ETHD_BRAKING);
   rig_close(&r);
 }
-END_TEST
 
 /* Speeds are right when the fault is over, because the estimator never stopped. */
-START_TEST(test_estimators_go_on) {
+TEST(test_estimators_go_on) {
   rig r, healthy;
   moody_open(&r, 1);
   moody_open(&healthy, 1);
@@ -138,10 +134,9 @@ START_TEST(test_estimators_go_on) {
   rig_close(&healthy);
   rig_close(&r);
 }
-END_TEST
 
 /* Ticks without a measurement are missed ones for whatever comes next: no speed is too high after them. */
-START_TEST(test_gap_of_measurements) {
+TEST(test_gap_of_measurements) {
   rig r, missing;
   moody_open(&r, 0);
   moody_open(&missing, 0);
@@ -170,10 +165,9 @@ START_TEST(test_gap_of_measurements) {
   rig_close(&missing);
   rig_close(&r);
 }
-END_TEST
 
 /* A law that fails just when it is to be replaced costs the estimators no sample either. */
-START_TEST(test_failure_at_a_swap) {
+TEST(test_failure_at_a_swap) {
   rig r;
   moody_open(&r, 0);
   ethd_setup_velocity(&r.setup, ETHD_VELOCITY_DIFFERENCE);
@@ -196,10 +190,9 @@ START_TEST(test_failure_at_a_swap) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* Numbers beyond any mechanism are refused, so that no estimator keeps them, also while a clear is waited for. */
-START_TEST(test_absurd_numbers) {
+TEST(test_absurd_numbers) {
   const struct {
     size_t offset;
     int64_t have;
@@ -237,11 +230,10 @@ START_TEST(test_absurd_numbers) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* A torque out of all measure, in a setup without a limit of it, is forgotten with the tick in which the Kalman
    filter took it for its input. */
-START_TEST(test_absurd_torque) {
+TEST(test_absurd_torque) {
   rig r;
   moody_open(&r, 1);
   ethd_setup_velocity(&r.setup, ETHD_VELOCITY_KALMAN);
@@ -259,10 +251,9 @@ START_TEST(test_absurd_torque) {
   ck_assert_double_eq(r.trace.qd[1], 0);
   rig_close(&r);
 }
-END_TEST
 
 /* Without latch each tick is judged alone: the one after is as if nothing had been. */
-START_TEST(test_without_latch) {
+TEST(test_without_latch) {
   rig r, healthy;
   moody_open(&r, 0);
   moody_open(&healthy, 0);
@@ -284,22 +275,4 @@ START_TEST(test_without_latch) {
   ck_assert(c.faults[ETHD_FAULT_LAW] == 10 && c.ticks == 30);
   rig_close(&healthy);
   rig_close(&r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("fault_latch");
-  TCase *t = tcase_create("fault_latch");
-  tcase_add_test(t, test_latched_until_cleared);
-  tcase_add_test(t, test_cleared_too_early);
-  tcase_add_test(t, test_post_during_a_fault);
-  tcase_add_test(t, test_contacts_begin_anew);
-  tcase_add_test(t, test_estimators_go_on);
-  tcase_add_test(t, test_gap_of_measurements);
-  tcase_add_test(t, test_failure_at_a_swap);
-  tcase_add_test(t, test_absurd_numbers);
-  tcase_add_test(t, test_absurd_torque);
-  tcase_add_test(t, test_without_latch);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -56,7 +56,7 @@ static void expect_zero(rig *r, int row) {
               r->command.torque[1] == 0 && r->trace.tau[0] == 0);
 }
 
-START_TEST(test_reaction) {
+TEST_LOOP(test_reaction, 2, 2 * ETHD_FAULT_COUNT) {
   int row = _i / 2, grave = _i % 2;
   rig r, healthy;
   moody_open(&r, 1);
@@ -79,10 +79,9 @@ START_TEST(test_reaction) {
   rig_close(&healthy);
   rig_close(&r);
 }
-END_TEST
 
 /* Bits outside of the table mean nothing. */
-START_TEST(test_unknown_bits) {
+TEST(test_unknown_bits) {
   rig r;
   moody_open(&r, 1);
   for (int bit = 0; bit < 64; bit++) {
@@ -92,10 +91,9 @@ START_TEST(test_unknown_bits) {
   ck_assert_int_eq(rig_poll(&r).kind, 0);
   rig_close(&r);
 }
-END_TEST
 
 /* Zero at once, whatever the rate limit. */
-START_TEST(test_zero_is_quicker_than_the_rate_limit) {
+TEST(test_zero_is_quicker_than_the_rate_limit) {
   rig r;
   moody_open(&r, 1);
   r.setup.limits.torque_rate = 1;
@@ -106,11 +104,10 @@ START_TEST(test_zero_is_quicker_than_the_rate_limit) {
   moody_expect_safe(&r, ETHD_E_DEVICE, ETHD_FAULT_DRIVE);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- occurrences ---- */
 
-START_TEST(test_occurrences) {
+TEST(test_occurrences) {
   const int row = ETHD_FAULT_FRAME_LOST, other = ETHD_FAULT_SENSOR;
   static const char way[] = "..##.#####..#", worse[] = "......xx.....";
   rig r;
@@ -133,11 +130,10 @@ START_TEST(test_occurrences) {
   ck_assert(counted(&r, other) == 1 && r.trace.fault == other);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- which is latched ---- */
 
-START_TEST(test_first_stays) {
+TEST(test_first_stays) {
   rig r;
   moody_open(&r, 1);
   ethd_sense bad;
@@ -160,10 +156,9 @@ START_TEST(test_first_stays) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* Of one tick's: zero before stop, then the lowest row. */
-START_TEST(test_worst_of_a_tick) {
+TEST(test_worst_of_a_tick) {
   rig r;
   moody_open(&r, 1);
   with(&r, moving(&r, 0.3),
@@ -172,11 +167,10 @@ START_TEST(test_worst_of_a_tick) {
   moody_expect_safe(&r, ETHD_E_DEVICE, ETHD_FAULT_DRIVE);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- the clean time ---- */
 
-START_TEST(test_clean_time) {
+TEST(test_clean_time) {
   rig r;
   moody_open(&r, 1);
   r.setup.limits.clean_time = 0.05;
@@ -203,7 +197,6 @@ START_TEST(test_clean_time) {
   ck_assert(isinf(ethd_control_clean_time(r.control)));
   rig_close(&r);
 }
-END_TEST
 
 /* ---- the clock ---- */
 
@@ -215,7 +208,7 @@ static const struct {
             {0, 4900000, 0},  {0, 5100000, 1}, {0, -5100000, 1}, {0, INT64_MAX / 2, 1},
             {3, -5100000, 1}, {0, -4000000, 0}};
 
-START_TEST(test_clock) {
+TEST_LOOP(test_clock, 0, sizeof gaps / sizeof *gaps) {
   for (int limited = 0; limited < 2; limited++) {
     rig r;
     moody_open(&r, 1);
@@ -233,7 +226,6 @@ START_TEST(test_clock) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* A clock that stands still or runs at another rate shows within two gaps of wrong time. Samples that come again, or
    that a device says are old, are late and no fault of a clock. */
@@ -245,7 +237,7 @@ static const struct {
 } clocks[] = {{1, 1, false, 0, 0},    {0, 1, false, 8, 12}, {4, 1, false, 2, 4},
               {1.01, 1, false, 0, 0}, {1, 7, false, 0, 0},  {0, 1, true, 0, 0}};
 
-START_TEST(test_clock_rate) {
+TEST_LOOP(test_clock_rate, 0, sizeof clocks / sizeof *clocks) {
   rig r;
   int seen = 0;
   moody_open(&r, 1);
@@ -263,10 +255,9 @@ START_TEST(test_clock_rate) {
   ck_assert_msg(seen >= clocks[_i].least && seen <= clocks[_i].most, "row CLOCK after %d ticks", seen);
   rig_close(&r);
 }
-END_TEST
 
 /* A bus's first sample may be from before the loop ran; the second may not. */
-START_TEST(test_first_sample) {
+TEST_LOOP(test_first_sample, 0, 2) {
   rig r;
   moody_open(&r, 1);
   r.setup.limits.gap = 0.005;
@@ -280,7 +271,6 @@ START_TEST(test_first_sample) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* ---- replay ---- */
 
@@ -293,7 +283,7 @@ static void random_sense(const rig *r, int tick, ethd_sense *s) {
   if (draw(seed + 50000, 0, 1) < 0.01) s->q[1] = NAN;
 }
 
-START_TEST(test_replays) {
+TEST(test_replays) {
   enum { TICKS = 2000 };
   static ethd_trace first[TICKS];
   for (int pass = 0; pass < 2; pass++) {
@@ -317,23 +307,4 @@ START_TEST(test_replays) {
     ck_assert_int_gt(cleared, 10);
     rig_close(&r);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("fault_rows");
-  TCase *t = tcase_create("fault_rows");
-  tcase_add_loop_test(t, test_reaction, 2, 2 * ETHD_FAULT_COUNT);
-  tcase_add_test(t, test_unknown_bits);
-  tcase_add_test(t, test_zero_is_quicker_than_the_rate_limit);
-  tcase_add_test(t, test_occurrences);
-  tcase_add_test(t, test_first_stays);
-  tcase_add_test(t, test_worst_of_a_tick);
-  tcase_add_test(t, test_clean_time);
-  tcase_add_loop_test(t, test_first_sample, 0, 2);
-  tcase_add_loop_test(t, test_clock, 0, sizeof gaps / sizeof *gaps);
-  tcase_add_loop_test(t, test_clock_rate, 0, sizeof clocks / sizeof *clocks);
-  tcase_add_test(t, test_replays);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

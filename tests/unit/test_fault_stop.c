@@ -6,7 +6,7 @@
 #include "unit/moody.h"
 
 /* Too fast: braked at once, whatever the rate limit; still: nothing, and only then safe. */
-START_TEST(test_speed) {
+TEST(test_speed) {
   rig r;
   moody_open(&r, 1);
   r.setup.limits.speed = 0.5;
@@ -41,9 +41,8 @@ START_TEST(test_speed) {
   ck_assert_double_eq_tol(r.command.torque[0], 299e-6, 1e-12); /* follows again, at the rate's pace */
   rig_close(&r);
 }
-END_TEST
 
-START_TEST(test_workspace) {
+TEST(test_workspace) {
   rig r;
   moody_open(&r, 0);
   r.setup.limits.workspace[0] = 0.24;
@@ -61,7 +60,6 @@ START_TEST(test_workspace) {
   ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- a bus out of step with the ticks ---- */
 
@@ -123,7 +121,7 @@ static double stop_on(const bus *b, double *end) {
 }
 
 /* Speeds by the ticks' time would seem to fall and rise by half, so that a stop with a reversed encoder would go on. */
-START_TEST(test_irregular_samples) {
+TEST(test_irregular_samples) {
   static const double exchanges[][2] = {{1, 1}, {0.3, 1.5}, {0.9, 2.5}, {1.5, 1.7}, {3, 9}};
   double worst = 0, end;
   for (size_t k = 0; k < sizeof exchanges / sizeof *exchanges; k++)
@@ -136,15 +134,4 @@ START_TEST(test_irregular_samples) {
         ck_assert_double_lt(end, 0.5);
       }
   ck_assert_msg(worst <= 1.4, "%g", worst);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("fault_stop");
-  TCase *t = tcase_create("fault_stop");
-  tcase_add_test(t, test_speed);
-  tcase_add_test(t, test_workspace);
-  tcase_add_test(t, test_irregular_samples);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -21,7 +21,7 @@ static const bad_input bad_inputs[] = {
     {IN(ring[0]), ETHD_HAVE_RING, ETHD_HAVE_RING},
 };
 
-START_TEST(test_input) {
+TEST_LOOP(test_input, 0, sizeof bad_inputs / sizeof *bad_inputs) {
   const bad_input *c = &bad_inputs[_i];
   const double values[] = {NAN, INFINITY, -INFINITY};
   for (int k = 0; k < 3; k++) {
@@ -37,10 +37,9 @@ START_TEST(test_input) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* What the sense doesn't claim to have isn't looked at. */
-START_TEST(test_fields_that_are_not_there) {
+TEST(test_fields_that_are_not_there) {
   rig r;
   moody_open(&r, 1);
   ethd_sense s = moody_sense(&r);
@@ -55,9 +54,8 @@ START_TEST(test_fields_that_are_not_there) {
   ck_assert_uint_eq(c.readings_dropped, 1);
   rig_close(&r);
 }
-END_TEST
 
-START_TEST(test_law_fails) {
+TEST_LOOP(test_law_fails, 0, 3) {
   int *const moods[] = {&mood.tracking, &mood.contact, &mood.transition};
   rig r;
   moody_open(&r, 1);
@@ -70,7 +68,6 @@ START_TEST(test_law_fails) {
   moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_LAW, 100 * _i + 16);
   rig_close(&r);
 }
-END_TEST
 
 static const struct {
   int kind;
@@ -100,7 +97,7 @@ static const struct {
     {ETHD_TRANSITION, offsetof(ethd_ruling, argument), NAN},
 };
 
-START_TEST(test_law_says_nonsense) {
+TEST_LOOP(test_law_says_nonsense, 0, sizeof bad_outputs / sizeof *bad_outputs) {
   rig r;
   moody_open(&r, 1);
   ethd_sense s = moody_sense(&r);
@@ -115,10 +112,9 @@ START_TEST(test_law_says_nonsense) {
   moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_FINITE, bad_outputs[_i].kind);
   rig_close(&r);
 }
-END_TEST
 
 /* Each number finite, their sum not: the guard's matter. */
-START_TEST(test_sum_overflows) {
+TEST(test_sum_overflows) {
   rig r;
   moody_open(&r, 1);
   ethd_scene *old = r.scene;
@@ -143,9 +139,8 @@ START_TEST(test_sum_overflows) {
   ethd_scene_destroy(old);
   rig_close(&r);
 }
-END_TEST
 
-START_TEST(test_budget) {
+TEST(test_budget) {
   rig r;
   moody_open(&r, 1);
   r.setup.limits.step_time = 100e-6;
@@ -160,10 +155,9 @@ START_TEST(test_budget) {
   moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_BUDGET, 100001);
   rig_close(&r);
 }
-END_TEST
 
 /* The rate limit holds back no fault's zero. */
-START_TEST(test_fault_is_quicker_than_the_rate_limit) {
+TEST(test_fault_is_quicker_than_the_rate_limit) {
   rig r;
   moody_open(&r, 1);
   ethd_sense s = moody_sense(&r);
@@ -179,28 +173,11 @@ START_TEST(test_fault_is_quicker_than_the_rate_limit) {
   moody_expect_safe(&r, ETHD_E_LAW, ETHD_FAULT_LAW);
   rig_close(&r);
 }
-END_TEST
 
-START_TEST(test_sentences) {
+TEST(test_sentences) {
   for (int i = 0; i < ETHD_FAULT_COUNT; i++)
     for (int j = 0; j < i; j++)
       ck_assert_str_ne(ethd_fault_sentence((ethd_fault)i), ethd_fault_sentence((ethd_fault)j));
   ck_assert_str_eq(ethd_fault_sentence((ethd_fault)-1), "an unknown fault");
   ck_assert_str_eq(ethd_fault_sentence(ETHD_FAULT_COUNT), "an unknown fault");
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("faults");
-  TCase *t = tcase_create("faults");
-  tcase_add_loop_test(t, test_input, 0, sizeof bad_inputs / sizeof *bad_inputs);
-  tcase_add_test(t, test_fields_that_are_not_there);
-  tcase_add_loop_test(t, test_law_fails, 0, 3);
-  tcase_add_loop_test(t, test_law_says_nonsense, 0, sizeof bad_outputs / sizeof *bad_outputs);
-  tcase_add_test(t, test_sum_overflows);
-  tcase_add_test(t, test_budget);
-  tcase_add_test(t, test_fault_is_quicker_than_the_rate_limit);
-  tcase_add_test(t, test_sentences);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

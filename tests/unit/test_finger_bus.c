@@ -108,7 +108,7 @@ static void settle(const ethd_driver *driver, void *device, const uint16_t count
   ck_assert_int_eq(pass(driver, device, 29999, counts).faults, 0);
 }
 
-START_TEST(test_zones) {
+TEST(test_zones) {
   const ethd_setting settings[] = {{"port", "port", 2}, {"patience", "30", 3}, {"zones", "12", 4}};
   const ethd_driver *driver = &ethd_driver_zones;
   uint16_t counts[16] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
@@ -137,9 +137,8 @@ START_TEST(test_zones) {
   ck_assert_int_eq(pass(driver, device, 30070, counts).have, 0);
   driver->close(device);
 }
-END_TEST
 
-START_TEST(test_nail) {
+TEST(test_nail) {
   const ethd_setting settings[] = {{"port", "port", 2},
                                    {"patience", "30", 3},
                                    {"calibration", "nail.ini", 4},
@@ -171,9 +170,8 @@ START_TEST(test_nail) {
   ck_assert_int_eq(pass(driver, device, 30040, counts).have, 0);
   driver->close(device);
 }
-END_TEST
 
-START_TEST(test_refused) {
+TEST(test_refused) {
   static const struct {
     const ethd_driver *driver;
     const char *key, *value, *says;
@@ -194,16 +192,5 @@ START_TEST(test_refused) {
     ck_assert_ptr_null(device);
   }
 }
-END_TEST
 
-int main(void) {
-  Suite *suite = suite_create("finger_bus");
-  TCase *tc = tcase_create("finger_bus");
-  tcase_set_timeout(tc, 60);
-  tcase_add_checked_fixture(tc, set_up, tear_down);
-  tcase_add_test(tc, test_zones);
-  tcase_add_test(tc, test_nail);
-  tcase_add_test(tc, test_refused);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
-}
+FIXTURE(set_up, tear_down)

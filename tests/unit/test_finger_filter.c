@@ -1,5 +1,6 @@
 /* The filters against their contract: every method, every compensation, what is refused. */
 #include "finger_filters.h"
+#include "unit/suite.h"
 
 static const char *const compensation[] = {"compensation", "gate", "latency", NULL};
 static const double none[] = {ETHD_COMPENSATION_NONE, INFINITY, 0};
@@ -8,7 +9,7 @@ static const double stamp[] = {ETHD_COMPENSATION_STAMP, INFINITY, 0};
 /* ---- the contract, every method ---- */
 
 /* On a ramp the stamp takes the latency away; without it the estimate stands b age behind. */
-START_TEST(test_latency_on_a_ramp) {
+TEST_LOOP(test_latency_on_a_ramp, 0, ETHD_FILTER_COUNT) {
   const double b = 0.4, age = 5e-3, last = 5999 * T;
   const double more[] = {ETHD_COMPENSATION_STAMP, INFINITY, 2e-3};
   ethd_filter a = with((ethd_filter_method)_i, compensation, stamp),
@@ -29,10 +30,9 @@ START_TEST(test_latency_on_a_ramp) {
   ck_assert_double_eq_tol(out_x(&d, &s[2]), b * (last + 2e-3), 1e-9);
   for (int k = 0; k < 3; k++) ck_assert_double_eq_tol(out_v(&a, &s[k]), b, 1e-7);
 }
-END_TEST
 
 /* With stamps it doesn't matter when a reading arrives, only that they come in order. */
-START_TEST(test_arrival_does_not_matter) {
+TEST_LOOP(test_arrival_does_not_matter, 0, ETHD_FILTER_COUNT) {
   ethd_filter f = with((ethd_filter_method)_i, compensation, stamp);
   ethd_filter_state a, b;
   memset(&a, 0, sizeof a);
@@ -51,10 +51,9 @@ START_TEST(test_arrival_does_not_matter) {
   ck_assert_double_eq_tol(out_v(&f, &a), out_v(&f, &b), 1e-9);
   for (int i = 0; i < 6; i++) ck_assert_double_le(fabs(a.cov[i] - b.cov[i]), 1e-9 * fabs(a.cov[i]));
 }
-END_TEST
 
 /* Older than the last one used, or the same again: nothing changes but the count. */
-START_TEST(test_late) {
+TEST_LOOP(test_late, 0, ETHD_FILTER_COUNT) {
   for (int mode = 0; mode < 2; mode++) {
     ethd_filter f = with((ethd_filter_method)_i, compensation, mode ? none : stamp);
     ethd_filter_state s, before;
@@ -72,10 +71,9 @@ START_TEST(test_late) {
     ck_assert_int_eq(feed(&f, &s, 0.111, 2.9e-3), ETHD_OK);
   }
 }
-END_TEST
 
 /* A start is known for now: with stamps a reading from before says nothing new; without, it counts. */
-START_TEST(test_start) {
+TEST_LOOP(test_start, 0, ETHD_FILTER_COUNT) {
   for (int mode = 0; mode < 2; mode++) {
     const double known[] = {mode ? ETHD_COMPENSATION_NONE : ETHD_COMPENSATION_STAMP, INFINITY, 1e-3};
     ethd_filter f = with((ethd_filter_method)_i, compensation, known);
@@ -90,10 +88,9 @@ START_TEST(test_start) {
     ck_assert_uint_eq(s.used, ordered ? 3 : 4);
   }
 }
-END_TEST
 
 /* Unstarted, it starts at the first reading, whatever its age; two more give the speed. */
-START_TEST(test_starts_itself) {
+TEST_LOOP(test_starts_itself, 0, ETHD_FILTER_COUNT) {
   ethd_filter f = with((ethd_filter_method)_i, compensation, stamp);
   ethd_filter_state s;
   memset(&s, 0, sizeof s);
@@ -105,9 +102,8 @@ START_TEST(test_starts_itself) {
   for (int k = 1; k < 4; k++) ck_assert_int_eq(feed(&f, &s, 0.3 + 0.5 * k / 300, 20e-3 - k / 300.0), ETHD_OK);
   ck_assert_double_eq_tol(out_v(&f, &s), 0.5, 0.05);
 }
-END_TEST
 
-START_TEST(test_not_finite_is_not_used) {
+TEST_LOOP(test_not_finite_is_not_used, 0, ETHD_FILTER_COUNT) {
   const double bad[] = {NAN, INFINITY, -INFINITY};
   ethd_filter f = with((ethd_filter_method)_i, compensation, stamp);
   ethd_filter_state s, before;
@@ -125,11 +121,10 @@ START_TEST(test_not_finite_is_not_used) {
   before.gated = 3 + 36;
   ck_assert_mem_eq(&s, &before, sizeof s);
 }
-END_TEST
 
 /* ---- set-up ---- */
 
-START_TEST(test_tables) {
+TEST(test_tables) {
   for (int m = 0; m < ETHD_FILTER_COUNT; m++) {
     const ethd_method *method = &ethd_filter_methods[m];
     ethd_filter a, b;
@@ -147,9 +142,8 @@ START_TEST(test_tables) {
     ck_assert_int_eq(a.reference, ETHD_REFERENCE_TICK);
   }
 }
-END_TEST
 
-START_TEST(test_refusals) {
+TEST(test_refusals) {
   static const struct {
     int method;
     const char *name;
@@ -181,20 +175,4 @@ START_TEST(test_refusals) {
   ck_assert_str_eq(error.name, "period");
   ck_assert_int_eq(ethd_filter_prepare(ETHD_FILTER_COUNT, p, T, &f, &error), ETHD_E_UNKNOWN);
   ck_assert(f.period == 42);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("finger_filter");
-  TCase *tc = tcase_create("finger_filter");
-  tcase_add_loop_test(tc, test_latency_on_a_ramp, 0, ETHD_FILTER_COUNT);
-  tcase_add_loop_test(tc, test_arrival_does_not_matter, 0, ETHD_FILTER_COUNT);
-  tcase_add_loop_test(tc, test_late, 0, ETHD_FILTER_COUNT);
-  tcase_add_loop_test(tc, test_start, 0, ETHD_FILTER_COUNT);
-  tcase_add_loop_test(tc, test_starts_itself, 0, ETHD_FILTER_COUNT);
-  tcase_add_loop_test(tc, test_not_finite_is_not_used, 0, ETHD_FILTER_COUNT);
-  tcase_add_test(tc, test_tables);
-  tcase_add_test(tc, test_refusals);
-  suite_add_tcase(suite, tc);
-  return run_suite(suite);
 }

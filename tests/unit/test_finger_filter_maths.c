@@ -1,5 +1,6 @@
 /* What the filters compute: against matrices in long double, by hand, gated, and side by side on reaches. */
 #include "finger_filters.h"
+#include "unit/suite.h"
 
 /* ---- Kalman filters as matrices ---- */
 
@@ -52,7 +53,7 @@ static void ref_equal(const reference *r, const ethd_filter_state *s) {
 }
 
 /* cv, ca, ca without fading; each tick by tick and by stamps; frames lost, ticks missed. */
-START_TEST(test_kalman_as_matrices) {
+TEST_LOOP(test_kalman_as_matrices, 0, 6) {
   static const char *const names[] = {"compensation", "gate", "latency", "noise",
                                       "acceleration", "jerk", "memory",  NULL};
   int ca = _i / 2 > 0, by_stamp = _i % 2;
@@ -97,21 +98,21 @@ START_TEST(test_kalman_as_matrices) {
   ck_assert_uint_eq(s.used, (uint32_t)used);
   ck_assert_uint_eq(s.late + s.gated + s.restarts, 0);
 }
-END_TEST
 
 /* ---- gate ---- */
 
 /* Within the gate of sqrt(P_xx + noise^2) it is used, outside not; both axes count together. */
-START_TEST(test_gate) {
+TEST_LOOP(test_gate, 0, 2) {
+  const ethd_filter_method method = _i ? ETHD_FILTER_CV : ETHD_FILTER_CA;
   static const char *const names[] = {"gate", "noise", NULL};
   const double values[] = {4, 0.1e-3};
-  ethd_filter f = with((ethd_filter_method)_i, names, values);
+  ethd_filter f = with(method, names, values);
   ethd_filter_state s, t;
   memset(&s, 0, sizeof s);
   ramp(&f, &s, 0.1, 2e-3);
-  reference r = {.n = _i == ETHD_FILTER_CA ? 3 : 2,
+  reference r = {.n = method == ETHD_FILTER_CA ? 3 : 2,
                  .noise = 0.1e-3,
-                 .drive = _i == ETHD_FILTER_CA ? 400 : 8,
+                 .drive = method == ETHD_FILTER_CA ? 400 : 8,
                  .memory = 0.08,
                  .x = {s.x[0], s.v[0], s.a[0]},
                  .p = {{s.cov[0], s.cov[1], s.cov[2]}, {s.cov[1], s.cov[3], s.cov[4]}, {s.cov[2], s.cov[4], s.cov[5]}}};
@@ -127,11 +128,10 @@ START_TEST(test_gate) {
     if (k % 2) ck_assert_mem_eq(t.x, s.x, sizeof s.x + sizeof s.v + sizeof s.a + sizeof s.cov + sizeof s.age);
   }
 }
-END_TEST
 
 /* A finger that jumped for good is found again with the fifth reading; four bad ones do nothing. */
-START_TEST(test_gated_in_a_row) {
-  ethd_filter f = finger_filter((ethd_filter_method)_i, NULL, 0);
+TEST_LOOP(test_gated_in_a_row, 0, 2) {
+  ethd_filter f = finger_filter(_i ? ETHD_FILTER_CV : ETHD_FILTER_CA, NULL, 0);
   ethd_filter_state s;
   memset(&s, 0, sizeof s);
   ramp(&f, &s, 0.1, 2e-3);
@@ -150,11 +150,10 @@ START_TEST(test_gated_in_a_row) {
   }
   ck_assert(s.restarts == 1 && s.gated == 9 && s.started == 1 && s.x[0] == here + 0.1);
 }
-END_TEST
 
 /* ---- fixed gains, by hand ---- */
 
-START_TEST(test_alpha_beta_by_hand) {
+TEST(test_alpha_beta_by_hand) {
   static const char *const names[] = {"alpha", "beta", NULL};
   const double gains[] = {0.5, 0.25};
   ethd_filter f = with(ETHD_FILTER_ALPHA_BETA, names, gains);
@@ -168,7 +167,6 @@ START_TEST(test_alpha_beta_by_hand) {
   ck_assert_double_eq_tol(s.v[0], 2 + 0.25 * 0.4 / 0.25, 1e-15);
   ck_assert_double_eq_tol(out_x(&f, &s), 1.7 + 2.4 * 0.25, 1e-15);
 }
-END_TEST
 
 /* ---- accuracy ---- */
 
@@ -185,7 +183,7 @@ static ethd_vec reach_at(const void *data, double t) {
 
 enum { REACHES = 40 };
 
-START_TEST(test_extrapolation) {
+TEST(test_extrapolation) {
   static reach reaches[REACHES];
   finger_path paths[REACHES];
   const double goal[] = {0.15, 0.25, 0.30};
@@ -214,19 +212,4 @@ START_TEST(test_extrapolation) {
     ck_assert_double_le(ca, (1 - goal[l]) * cv);
     ck_assert_double_le(finger_rms(by[ETHD_FILTER_CA]), 1.15 * ca);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("finger_filter_maths");
-  TCase *tc = tcase_create("finger_filter_maths");
-  tcase_add_loop_test(tc, test_kalman_as_matrices, 0, 6);
-  tcase_add_loop_test(tc, test_gate, ETHD_FILTER_CA, ETHD_FILTER_CA + 1);
-  tcase_add_loop_test(tc, test_gate, ETHD_FILTER_CV, ETHD_FILTER_CV + 1);
-  tcase_add_loop_test(tc, test_gated_in_a_row, ETHD_FILTER_CA, ETHD_FILTER_CA + 1);
-  tcase_add_loop_test(tc, test_gated_in_a_row, ETHD_FILTER_CV, ETHD_FILTER_CV + 1);
-  tcase_add_test(tc, test_alpha_beta_by_hand);
-  tcase_add_test(tc, test_extrapolation);
-  suite_add_tcase(suite, tc);
-  return run_suite(suite);
 }

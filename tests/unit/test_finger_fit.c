@@ -1,12 +1,11 @@
 /* Ring fits against brute force, hand-made polygons and the Cramer-Rao bound. */
 #include "ethd/estimate.h"
 
-#include <check.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "draw.h"
+#include "unit/suite.h"
 
 #define RING 12e-3
 #define FINGER 7.5e-3
@@ -41,7 +40,7 @@ static double distance(ethd_vec a, ethd_vec b) { return ethd_vec_norm(ethd_vec_s
 
 /* ---- geometry ---- */
 
-START_TEST(test_rays_end_on_the_finger) {
+TEST(test_rays_end_on_the_finger) {
   for (uint64_t i = 0; i < 2000; i++) {
     double r[ETHD_RAYS];
     ethd_vec c = some_centre(i);
@@ -53,20 +52,18 @@ START_TEST(test_rays_end_on_the_finger) {
     }
   }
 }
-END_TEST
 
-START_TEST(test_rays_that_miss) {
+TEST(test_rays_that_miss) {
   double r[ETHD_RAYS];
   ethd_fit_rays(RING, 2e-3, (ethd_vec){5e-3, 0}, r);
   /* asin(2/5) = 23.6 deg: only rays 0 and +-22.5 deg meet it, and none from the other side. */
   for (int k = 0; k < ETHD_RAYS; k++) ck_assert_int_eq(!isnan(r[k]), k <= 1 || k == 15);
   ck_assert_double_eq_tol(r[0], RING - 7e-3, 1e-17);
 }
-END_TEST
 
 /* Without noise both circles are exact, whatever rays are missing. */
-START_TEST(test_circles_are_exact) {
-  ethd_fit fit = prepared((ethd_fit_method)_i);
+TEST_LOOP(test_circles_are_exact, 0, 2) {
+  ethd_fit fit = prepared(_i ? ETHD_FIT_ROBUST : ETHD_FIT_KASA);
   for (uint64_t i = 0; i < 5000; i++) {
     double r[ETHD_RAYS];
     ethd_vec c = some_centre(i);
@@ -84,9 +81,8 @@ START_TEST(test_circles_are_exact) {
     ck_assert_uint_eq(finger.used, mask);
   }
 }
-END_TEST
 
-START_TEST(test_two_rays_with_known_radius) {
+TEST(test_two_rays_with_known_radius) {
   ethd_fit robust = prepared(ETHD_FIT_ROBUST), kasa = prepared(ETHD_FIT_KASA);
   for (int k = 1; k < ETHD_RAYS; k++) {
     double all[ETHD_RAYS], r[ETHD_RAYS];
@@ -101,7 +97,6 @@ START_TEST(test_two_rays_with_known_radius) {
     ck_assert_double_le(distance(finger.centre, c), 1e-6);
   }
 }
-END_TEST
 
 /* Where the first step from the ring's middle goes, by the normal equations of two points: how far from the line
    between them it ends, times their distance. */
@@ -114,7 +109,7 @@ static double beside_after_a_step(ethd_vec u, ethd_vec v) {
 
 /* Two points farther apart than a finger is wide, so that the first step ends on the line between them: there nothing
    holds the centre across it, and there is no answer. */
-START_TEST(test_two_rays_too_far_apart) {
+TEST(test_two_rays_too_far_apart) {
   ethd_fit fit = prepared(ETHD_FIT_ROBUST);
   double low = 0, high = RING - 5e-3, r[ETHD_RAYS];
   ethd_vec u = {RING, 0}, way = {cos(6 * PI / 8), sin(6 * PI / 8)};
@@ -131,7 +126,6 @@ START_TEST(test_two_rays_too_far_apart) {
   ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STATUS_STALE);
   ck_assert(finger.radius == 42);
 }
-END_TEST
 
 /* ---- least squares, against a search that knows nothing of normal equations ---- */
 
@@ -168,9 +162,9 @@ static void search(const problem *p, long double v[3]) {
   }
 }
 
-START_TEST(test_least_squares) {
-  int robust = _i == ETHD_FIT_ROBUST;
-  ethd_fit fit = prepared((ethd_fit_method)_i);
+TEST_LOOP(test_least_squares, 0, 2) {
+  int robust = _i;
+  ethd_fit fit = prepared(robust ? ETHD_FIT_ROBUST : ETHD_FIT_KASA);
   for (uint64_t i = 0; i < 40; i++) {
     double r[ETHD_RAYS];
     ethd_finger finger;
@@ -188,10 +182,9 @@ START_TEST(test_least_squares) {
     if (robust && i % 4 == 3) ck_assert_uint_eq(finger.used >> 11 & 1, 0);
   }
 }
-END_TEST
 
 /* A ray is left out by its distance from the circle, and then from radius and residual as well. */
-START_TEST(test_gate) {
+TEST(test_gate) {
   ethd_fit fit = prepared(ETHD_FIT_ROBUST);
   const double off[] = {0.8e-3, -0.8e-3, 1.8e-3, -1.8e-3, 4e-3, -4e-3};
   for (int i = 0; i < 6; i++)
@@ -209,10 +202,9 @@ START_TEST(test_gate) {
       ck_assert(out == (finger.residual < 1e-6));
     }
 }
-END_TEST
 
 /* Three rays side by side say little, but where kasa gets lost the known radius doesn't. */
-START_TEST(test_three_rays_side_by_side) {
+TEST(test_three_rays_side_by_side) {
   ethd_fit fit = prepared(ETHD_FIT_ROBUST);
   double sum = 0;
   for (uint64_t i = 0; i < TRIALS; i++) {
@@ -227,7 +219,6 @@ START_TEST(test_three_rays_side_by_side) {
   }
   ck_assert_double_le(1e3 * sqrt(sum / TRIALS), 0.40);
 }
-END_TEST
 
 /* ---- polygons ---- */
 
@@ -237,7 +228,7 @@ static void kite(double r[ETHD_RAYS]) {
   r[4] = r[8] = r[12] = RING - 4e-3;
 }
 
-START_TEST(test_polygons_by_hand) {
+TEST(test_polygons_by_hand) {
   ethd_fit mean = prepared(ETHD_FIT_VERTEX_MEAN), area = prepared(ETHD_FIT_CENTROID);
   double r[ETHD_RAYS];
   ethd_finger finger;
@@ -252,10 +243,9 @@ START_TEST(test_polygons_by_hand) {
   ck_assert_double_le(distance(finger.centre, (ethd_vec){4e-3 / 3, 0}), 1e-17);
   ck_assert_uint_eq(finger.used, 0x1111);
 }
-END_TEST
 
 /* Shoelace about the origin. */
-START_TEST(test_centroid_as_shoelace) {
+TEST(test_centroid_as_shoelace) {
   ethd_fit fit = prepared(ETHD_FIT_CENTROID);
   for (uint64_t i = 0; i < 1000; i++) {
     double r[ETHD_RAYS];
@@ -277,10 +267,9 @@ START_TEST(test_centroid_as_shoelace) {
     ck_assert_double_le(distance(finger.centre, (ethd_vec){x / area, y / area}), 1e-16);
   }
 }
-END_TEST
 
 /* The mean of 16 u u^T is half the identity. */
-START_TEST(test_vertex_mean_has_gain_one_half) {
+TEST(test_vertex_mean_has_gain_one_half) {
   ethd_fit fit = prepared(ETHD_FIT_VERTEX_MEAN);
   for (int i = 0; i < 50; i++) {
     double r[ETHD_RAYS], a = i * 0.13, offset = 1e-6;
@@ -290,11 +279,10 @@ START_TEST(test_vertex_mean_has_gain_one_half) {
     ck_assert_double_le(distance(finger.centre, (ethd_vec){offset / 2 * cos(a), offset / 2 * sin(a)}), 1e-6 * offset);
   }
 }
-END_TEST
 
 /* ---- rays that don't count, rays that don't suffice ---- */
 
-START_TEST(test_what_counts) {
+TEST_LOOP(test_what_counts, 0, ETHD_FIT_COUNT) {
   const double edge[] = {RING, 1.5 * RING, INFINITY, -INFINITY, NAN, -RING, -1};
   ethd_fit fit = prepared((ethd_fit_method)_i);
   for (size_t e = 0; e < sizeof edge / sizeof *edge; e++) {
@@ -322,9 +310,8 @@ START_TEST(test_what_counts) {
     ck_assert(finger.radius >= 0 && finger.radius < 1e-9 && finger.residual >= 0 && finger.residual < 1e6);
   }
 }
-END_TEST
 
-START_TEST(test_too_little) {
+TEST_LOOP(test_too_little, 0, ETHD_FIT_COUNT) {
   ethd_fit fit = prepared((ethd_fit_method)_i);
   double r[ETHD_RAYS];
   ethd_finger finger = {.radius = 42};
@@ -347,7 +334,6 @@ START_TEST(test_too_little) {
   }
   ck_assert(finger.radius == 42);
 }
-END_TEST
 
 /* ---- accuracy ---- */
 
@@ -404,7 +390,7 @@ static void measure(scenario what, double out[ETHD_FIT_COUNT + 2]) {
   printf("\n");
 }
 
-START_TEST(test_accuracy) {
+TEST(test_accuracy) {
   double full[ETHD_FIT_COUNT + 2], half[ETHD_FIT_COUNT + 2], outlier[ETHD_FIT_COUNT + 2];
   printf("centre error rms, mm             kasa vertex-mean    centroid      robust       bound  known "
          "R\n");
@@ -419,11 +405,10 @@ START_TEST(test_accuracy) {
   ck_assert_double_le(half[ETHD_FIT_KASA], 1.05 * half[ETHD_FIT_COUNT]);
   ck_assert_double_le(outlier[ETHD_FIT_ROBUST], 0.10);
 }
-END_TEST
 
 /* ---- set-up ---- */
 
-START_TEST(test_tables) {
+TEST(test_tables) {
   for (int m = 0; m < ETHD_FIT_COUNT; m++) {
     const ethd_method *method = &ethd_fit_methods[m];
     ethd_fit a, b;
@@ -437,9 +422,8 @@ START_TEST(test_tables) {
     ck_assert_mem_eq(&a, &b, sizeof a);
   }
 }
-END_TEST
 
-START_TEST(test_refusals) {
+TEST(test_refusals) {
   static const struct {
     int method;
     double gate, ring, finger;
@@ -463,34 +447,4 @@ START_TEST(test_refusals) {
     ck_assert_str_eq(error.name, bad[i].name);
     ck_assert(fit.ring_radius == 42);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("finger_fit");
-  TCase *tc = tcase_create("fits");
-  tcase_add_test(tc, test_rays_end_on_the_finger);
-  tcase_add_test(tc, test_rays_that_miss);
-  tcase_add_loop_test(tc, test_circles_are_exact, ETHD_FIT_KASA, ETHD_FIT_KASA + 1);
-  tcase_add_loop_test(tc, test_circles_are_exact, ETHD_FIT_ROBUST, ETHD_FIT_ROBUST + 1);
-  tcase_add_test(tc, test_two_rays_with_known_radius);
-  tcase_add_test(tc, test_two_rays_too_far_apart);
-  tcase_add_loop_test(tc, test_least_squares, ETHD_FIT_KASA, ETHD_FIT_KASA + 1);
-  tcase_add_loop_test(tc, test_least_squares, ETHD_FIT_ROBUST, ETHD_FIT_ROBUST + 1);
-  tcase_add_test(tc, test_gate);
-  tcase_add_test(tc, test_three_rays_side_by_side);
-  tcase_add_test(tc, test_polygons_by_hand);
-  tcase_add_test(tc, test_centroid_as_shoelace);
-  tcase_add_test(tc, test_vertex_mean_has_gain_one_half);
-  tcase_add_loop_test(tc, test_what_counts, 0, ETHD_FIT_COUNT);
-  tcase_add_loop_test(tc, test_too_little, 0, ETHD_FIT_COUNT);
-  tcase_add_test(tc, test_accuracy);
-  tcase_add_test(tc, test_tables);
-  tcase_add_test(tc, test_refusals);
-  suite_add_tcase(suite, tc);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

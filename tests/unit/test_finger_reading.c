@@ -35,7 +35,7 @@ static ethd_trace step(ethd_control *control, const ethd_sense *s) {
 
 /* Two readings, 1 ms apart: their mean, weighted by 1 / variance as every textbook has it. In between the finger, seen
    once, may have moved at 1 m/s and 10 m/s^2 (sd). */
-START_TEST(test_weights) {
+TEST_LOOP(test_weights, 0, 4) {
   const double sd[][2] = {{1e-4, 1e-4}, {1e-4, 1e-3}, {2e-3, 1e-4}, {1e-3, 5e-4}};
   ethd_control *control = control_of((double)INFINITY);
   ethd_sense first = sense_at(1000000, ETHD_HAVE_CENTRE | ETHD_HAVE_RING), second;
@@ -54,10 +54,9 @@ START_TEST(test_weights) {
   ck_assert_double_eq_tol(t.xf[1], 0.25 + b * 2e-4 / (a + b), 2e-8);
   ethd_control_destroy(control);
 }
-END_TEST
 
 /* 0 is the configuration's noise, to the bit. */
-START_TEST(test_default) {
+TEST(test_default) {
   ethd_control *own = control_of((double)INFINITY), *told = control_of((double)INFINITY);
   for (int k = 0; k < 30; k++) {
     ethd_sense s = sense_at(1000000 * (k + 1), k % 3 ? 0 : ETHD_HAVE_CENTRE);
@@ -71,10 +70,9 @@ START_TEST(test_default) {
   ethd_control_destroy(own);
   ethd_control_destroy(told);
 }
-END_TEST
 
 /* What is no noise makes no reading. */
-START_TEST(test_no_noise) {
+TEST_LOOP(test_no_noise, 0, 4) {
   const double bad[] = {-1e-4, (double)NAN, (double)INFINITY, 1e7};
   ethd_control *control = control_of((double)INFINITY);
   ethd_sense s = sense_at(1000000, ETHD_HAVE_CENTRE);
@@ -85,10 +83,9 @@ START_TEST(test_no_noise) {
   ck_assert_uint_eq(counters.readings_dropped, 1);
   ethd_control_destroy(control);
 }
-END_TEST
 
 /* The world's finger is the ring's, whatever `ring` and [finger_filter] reference say. */
-START_TEST(test_world) {
+TEST_LOOP(test_world, 0, 2) {
   ethd_setup setup = ethd_setup_default();
   ethd_control *control;
   ethd_error error;
@@ -102,11 +99,10 @@ START_TEST(test_world) {
   ck_assert_double_eq_tol(t.xf[1], 0.249, 1e-15);
   ethd_control_destroy(control);
 }
-END_TEST
 
 /* A late reading belongs to where the ring was then. The controller remembers 32 ticks of it; what is older is taken
    for the oldest of them. */
-START_TEST(test_late) {
+TEST_LOOP(test_late, 0, 6) {
   const int ages[] = {0, 5, 31, 32, 40, 90};
   const double speed = 0.05; /* m/s */
   const ethd_arm arm = {ETHD_ARM_PARALLEL, 0.25, 0.25};
@@ -126,10 +122,9 @@ START_TEST(test_late) {
   ck_assert_double_eq_tol(t.xf[0], 0.25 + 1e-3 * speed * (100 - fmin(ages[_i], 31)) + 1e-4, 1e-12);
   ethd_control_destroy(control);
 }
-END_TEST
 
 /* A device's finger can't be outside of its ring: judged where the ring stood, not at the world's origin. */
-START_TEST(test_world_outside) {
+TEST(test_world_outside) {
   ethd_control *control = control_of(0.01);
   ethd_sense s = sense_at(1000000, ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD);
   put((ethd_vec){0.253, 0.25}, s.centre);
@@ -142,7 +137,6 @@ START_TEST(test_world_outside) {
   ck_assert_uint_eq(counters.readings_dropped, 1);
   ethd_control_destroy(control);
 }
-END_TEST
 
 /* How often within 3 s the finger was too old, with readings of 90 Hz. */
 static uint64_t trips(double latency, double finger_age) {
@@ -167,7 +161,7 @@ static uint64_t trips(double latency, double finger_age) {
 }
 
 /* A limit for 300 Hz trips at nearly every reading of 90 Hz; one that the rate gives never does. */
-START_TEST(test_rate) {
+TEST(test_rate) {
   ethd_limits own = ethd_limits_none();
   ck_assert_uint_gt(trips(0, ethd_limits_device().finger_age), 200);
   ethd__finger_limits(90, 0, &own);
@@ -176,19 +170,4 @@ START_TEST(test_rate) {
   ck_assert_uint_eq(trips(11.1e-3, own.finger_age), 0);
   ck_assert_double_eq_tol(own.finger_age, 44.4e-3, 1e-4);
   ck_assert_double_eq_tol(own.finger_lost, 111.1e-3, 1e-4);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("finger_reading");
-  TCase *tc = tcase_create("finger_reading");
-  tcase_add_loop_test(tc, test_weights, 0, 4);
-  tcase_add_test(tc, test_default);
-  tcase_add_loop_test(tc, test_no_noise, 0, 4);
-  tcase_add_loop_test(tc, test_world, 0, 2);
-  tcase_add_loop_test(tc, test_late, 0, 6);
-  tcase_add_test(tc, test_world_outside);
-  tcase_add_test(tc, test_rate);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }

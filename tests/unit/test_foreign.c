@@ -42,7 +42,7 @@ static void expect_found(rig *r, ethd_kind kind, ethd_status status) {
 
 /* ---- beside the state block ---- */
 
-START_TEST(test_writes_past) {
+TEST_LOOP(test_writes_past, 0, 6) {
   rig r;
   rig_open(&r, RIG_WALL);
   ethd_setup_transition(&r.setup, open_law("writes_past"));
@@ -54,7 +54,6 @@ START_TEST(test_writes_past) {
   expect_found(&r, ETHD_TRANSITION, ETHD_E_FENCE);
   rig_close(&r);
 }
-END_TEST
 
 /* All of its state, to the last byte, is a law's own. */
 static ethd_status fills(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) {
@@ -109,7 +108,7 @@ static ethd_status cuts(const double *p, void *state, const ethd_tracking_in *in
 #define cuts fills_more
 #endif
 
-START_TEST(test_to_the_byte) {
+TEST(test_to_the_byte) {
   static const struct {
     ethd_status (*step)(const double *p, void *state, const ethd_tracking_in *in, double tau[2]);
     void (*reset)(const double *p, void *state);
@@ -140,7 +139,6 @@ START_TEST(test_to_the_byte) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* ---- what a law does when it is asked how far it looks, and when it takes a contact over ---- */
 
@@ -160,7 +158,7 @@ static void adopt(const double *p, void *state, const ethd_past *past) {
 }
 
 /* In contact, a law is swapped in that misbehaves (1: at every tick, also in its very first one). */
-START_TEST(test_range_and_adopt) {
+TEST_LOOP(test_range_and_adopt, 0, 5) {
   const ethd_status found = _i == 0 ? ETHD_OK : _i < 3 ? ETHD_E_FENV : ETHD_E_FENCE;
   ethd_transition_law law = ethd_transition_smooth;
   law.range = range_of;
@@ -184,11 +182,10 @@ START_TEST(test_range_and_adopt) {
   if (found) ck_assert(e.code == ETHD_FAULT_LAW && e.value == told(ETHD_TRANSITION, found));
   rig_close(&r);
 }
-END_TEST
 
 /* Laws of one and the same code, once as the library's own and once as a foreign one: equal to the last bit, swaps
    from one to the other included. */
-START_TEST(test_fenced_is_the_same) {
+TEST(test_fenced_is_the_same) {
   static ethd_tracking_law tracking;
   static ethd_contact_law contact;
   static ethd_transition_law transition;
@@ -225,7 +222,6 @@ START_TEST(test_fenced_is_the_same) {
   rig_close(&own);
   rig_close(&foreign);
 }
-END_TEST
 
 /* ---- the processor ---- */
 
@@ -237,7 +233,7 @@ static unsigned control_now(void) {
 #endif
 }
 
-START_TEST(test_rounds) {
+TEST_LOOP(test_rounds, 0, 3) {
   rig r;
   unsigned before = control_now();
   rig_open(&r, RIG_WALL);
@@ -251,7 +247,6 @@ START_TEST(test_rounds) {
   ck_assert(third / three == 0x1.5555555555555p-2);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- which law runs ---- */
 
@@ -265,7 +260,7 @@ static ethd_status asks(const double *p, void *state, const ethd_tracking_in *in
   return ETHD_OK;
 }
 
-START_TEST(test_running_law) {
+TEST(test_running_law) {
   ethd_tracking_law law = ethd_tracking_pd;
   law.step = asks;
   for (int rehearsed = 0; rehearsed < 2; rehearsed++) {
@@ -286,11 +281,10 @@ START_TEST(test_running_law) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* ---- strings ---- */
 
-START_TEST(test_strings) {
+TEST(test_strings) {
   const char *const bad[] = {NULL, "", "\033[2J", "a\nb", "tab\t", "\x7f", "caf\xc3\xa9"};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     ethd_transition_law law = ethd_transition_smooth;
@@ -309,19 +303,4 @@ START_TEST(test_strings) {
   ethd_error error;
   ck_assert_int_eq(ethd_params_check_table(&row, 1, &error), ETHD_E_TABLE);
   ck_assert_str_eq(error.name, "g?]0;x"); /* what people are shown steers no terminal */
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("foreign");
-  TCase *t = tcase_create("foreign");
-  tcase_add_loop_test(t, test_writes_past, 0, 6);
-  tcase_add_test(t, test_to_the_byte);
-  tcase_add_loop_test(t, test_range_and_adopt, 0, 5);
-  tcase_add_test(t, test_fenced_is_the_same);
-  tcase_add_loop_test(t, test_rounds, 0, 3);
-  tcase_add_test(t, test_running_law);
-  tcase_add_test(t, test_strings);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

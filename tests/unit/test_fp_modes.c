@@ -169,7 +169,7 @@ static void compare(const chosen *c) {
   }
 }
 
-START_TEST(test_laws) {
+TEST(test_laws) {
   static const ethd_transition_law *const transitions[] = {&ethd_transition_abrupt, &ethd_transition_smooth,
                                                            &ethd_transition_offset, &ethd_transition_predictive};
   static const ethd_contact_law *const contacts[] = {&ethd_contact_kelvin_voigt, &ethd_contact_spring,
@@ -181,9 +181,8 @@ START_TEST(test_laws) {
           compare(&(chosen){transitions[t], contacts[k], ETHD_VELOCITY_LOWPASS, ETHD_FILTER_CA, ETHD_FIT_KASA, source,
                             limits});
 }
-END_TEST
 
-START_TEST(test_estimators) {
+TEST(test_estimators) {
   for (int v = 0; v < ETHD_VELOCITY_COUNT; v++)
     compare(&(chosen){&ethd_transition_offset, &ethd_contact_kelvin_voigt, (ethd_velocity_method)v, ETHD_FILTER_CA,
                       ETHD_FIT_KASA, 0, 1});
@@ -194,7 +193,6 @@ START_TEST(test_estimators) {
     compare(&(chosen){&ethd_transition_offset, &ethd_contact_kelvin_voigt, ETHD_VELOCITY_LOWPASS, ETHD_FILTER_CA,
                       (ethd_fit_method)f, 2, 0});
 }
-END_TEST
 
 /* ---- a law of somebody else's ---- */
 
@@ -210,7 +208,7 @@ static ethd_status divides(const double *p, void *state, double gap, double spee
   return ETHD_OK;
 }
 
-START_TEST(test_foreign_law) {
+TEST(test_foreign_law) {
   static const ethd_param params[] = {{"traps", "1", 0, 1, 0, "turns traps on"}};
   static const ethd_contact_law law = {
       {sizeof law, ETHD_ABI, ETHD_CONTACT, 0, "divides", "divides by zero", params, 1, NULL, NULL}, divides};
@@ -231,11 +229,10 @@ START_TEST(test_foreign_law) {
   }
   ck_assert_int_eq(law_saw_traps, 0);
 }
-END_TEST
 
 /* ---- what an application calls beside the controller, with the traps that numerical programs have ---- */
 
-START_TEST(test_configurations) {
+TEST(test_configurations) {
   static const char text[] = "[transition]\nlaw = predictive\n[contact]\nk_e = 300.1\n[limits]\ntorque = 1\n";
   char message[ETHD_MESSAGE_MAX];
   double expected = 0;
@@ -259,10 +256,9 @@ START_TEST(test_configurations) {
     ethd_config_free(config);
   }
 }
-END_TEST
 
 /* NaN where it is allowed, or refused. */
-START_TEST(test_numbers_that_are_none) {
+TEST(test_numbers_that_are_none) {
   static const mode traps = {FE_TONEAREST, USUAL_TRAPS, 0};
   ethd_error error;
   ethd_setup setup = ethd_setup_default();
@@ -279,9 +275,8 @@ START_TEST(test_numbers_that_are_none) {
   ck_assert_int_eq(status[3], ETHD_E_NOT_FINITE);
   ck_assert(range > 0);
 }
-END_TEST
 
-START_TEST(test_estimators_alone) {
+TEST(test_estimators_alone) {
   static const mode traps = {FE_TONEAREST, USUAL_TRAPS, 0};
   double rays[ETHD_RAYS], p[ETHD_PARAMS_MAX];
   ethd_error error;
@@ -325,9 +320,8 @@ START_TEST(test_estimators_alone) {
     ck_assert(isfinite(speed));
   }
 }
-END_TEST
 
-START_TEST(test_scenes_alone) {
+TEST(test_scenes_alone) {
   static const mode traps = {FE_TONEAREST, USUAL_TRAPS, 0};
   ethd_scene *scene = rig_scene(room);
   const ethd_arm arm = {ETHD_ARM_PARALLEL, 0.25, 0.25};
@@ -353,7 +347,6 @@ START_TEST(test_scenes_alone) {
   ethd_scene_destroy(pruned);
   ethd_scene_destroy(scene);
 }
-END_TEST
 
 /* ---- NaN, infinities and poles, each in each place ---- */
 
@@ -365,7 +358,7 @@ static const mode usual_traps = {FE_TONEAREST, USUAL_TRAPS, 0};
 /* Equal, or both NaN. */
 static bool alike(double a, double b) { return a == b || (isnan(a) && isnan(b)); }
 
-START_TEST(test_odd_maths) {
+TEST(test_odd_maths) {
   volatile double y[7];
   double sine, cosine;
   for (int i = 0; i < ODD; i++) {
@@ -385,9 +378,8 @@ START_TEST(test_odd_maths) {
   IN(&usual_traps, y[0] = ethd_exp(0x1.62e42fefa39efp+9); y[1] = ethd_exp(0x1.62e42fefa39fp+9));
   ck_assert(y[0] > 1.797e308 && isfinite(y[0]) && isinf(y[1])); /* the last that is finite, and the next */
 }
-END_TEST
 
-START_TEST(test_odd_arms_and_limits) {
+TEST(test_odd_arms_and_limits) {
   const ethd_arm arms[] = {{ETHD_ARM_PARALLEL, 0.25, 0.25}, {ETHD_ARM_SERIAL, 0.25, 0.2}};
   ethd_error error;
   for (int n = 0; n < 2 * ODD * ODD; n++) {
@@ -409,10 +401,9 @@ START_TEST(test_odd_arms_and_limits) {
     ck_assert_int_eq(status, b >= 0 && b <= 1 ? ETHD_OK : isfinite(b) ? ETHD_E_RANGE : ETHD_E_NOT_FINITE);
   }
 }
-END_TEST
 
 /* A torque that isn't finite, and a speed or a place that isn't a number, end in zero torque; never in more than the limit. */
-START_TEST(test_odd_guards) {
+TEST(test_odd_guards) {
   const ethd_arm arm = {ETHD_ARM_PARALLEL, 0.25, 0.25};
   const double q[2] = {0.3, 0.9};
   for (int n = 0; n < 4 * ODD * ODD; n++) {
@@ -450,9 +441,8 @@ START_TEST(test_odd_guards) {
     (void)heat;
   }
 }
-END_TEST
 
-START_TEST(test_odd_readings) {
+TEST(test_odd_readings) {
   double rays[ETHD_RAYS], p[ETHD_PARAMS_MAX];
   ethd_error error;
   ethd_scene *scene = rig_scene(room);
@@ -485,11 +475,10 @@ START_TEST(test_odd_readings) {
   }
   ethd_scene_destroy(scene);
 }
-END_TEST
 
 static const char plants[] = "apps/config";
 
-START_TEST(test_simulated_devices) {
+TEST(test_simulated_devices) {
   static const char *const names[] = {"n", "b", "p"};
   char message[ETHD_MESSAGE_MAX], path[64];
   for (int n = 0; n < 3 * ETHD_READING_COUNT; n++) {
@@ -517,9 +506,8 @@ START_TEST(test_simulated_devices) {
     ethd_sim_destroy(sim);
   }
 }
-END_TEST
 
-START_TEST(test_odd_simulations) {
+TEST(test_odd_simulations) {
   char message[ETHD_MESSAGE_MAX], path[64], file[] = "/tmp/ethd-plant-XXXXXX";
   ethd_plant plant, other;
   ethd_status status;
@@ -564,35 +552,4 @@ START_TEST(test_odd_simulations) {
   unlink(file);
   ck_assert_int_eq(status, ETHD_E_RANGE);
   ck_assert_msg(strstr(message, "device.mass_x: found \"nan\", 0.001 to 1000 kg is allowed") != NULL, "%s", message);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("floating-point modes");
-  TCase *t = tcase_create("controller");
-  tcase_add_test(t, test_laws);
-  tcase_add_test(t, test_estimators);
-  tcase_add_test(t, test_foreign_law);
-  suite_add_tcase(suite, t);
-  t = tcase_create("configurations");
-  tcase_add_test(t, test_configurations);
-  suite_add_tcase(suite, t);
-  t = tcase_create("numbers");
-  tcase_add_test(t, test_numbers_that_are_none);
-  suite_add_tcase(suite, t);
-  t = tcase_create("estimators");
-  tcase_add_test(t, test_estimators_alone);
-  suite_add_tcase(suite, t);
-  t = tcase_create("scenes");
-  tcase_add_test(t, test_scenes_alone);
-  suite_add_tcase(suite, t);
-  t = tcase_create("odd numbers");
-  tcase_add_test(t, test_odd_maths);
-  tcase_add_test(t, test_odd_arms_and_limits);
-  tcase_add_test(t, test_odd_guards);
-  tcase_add_test(t, test_odd_readings);
-  tcase_add_test(t, test_simulated_devices);
-  tcase_add_test(t, test_odd_simulations);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -35,7 +35,7 @@ static void is(const double tau[2], double t1, double t2) {
   ck_assert_double_eq_tol(tau[1], t2, 1e-15);
 }
 
-START_TEST(test_no_limits) {
+TEST(test_no_limits) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
   double tau[2];
@@ -43,9 +43,8 @@ START_TEST(test_no_limits) {
   ck_assert(tau[0] == 1e300 && tau[1] == -1e300);
   for (int i = 0; i < ETHD_GUARD_COUNT; i++) ck_assert_uint_eq(s.counts[i], 0);
 }
-END_TEST
 
-START_TEST(test_torque) {
+TEST(test_torque) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
   double tau[2];
@@ -58,10 +57,9 @@ START_TEST(test_torque) {
   is(tau, 0, 0);
   ck_assert_uint_eq(s.counts[1], 2); /* ticks, not joints */
 }
-END_TEST
 
 /* 100 Nm/s: 0.1 Nm a tick, from the torque that was commanded, not the one that was asked for. */
-START_TEST(test_rate) {
+TEST(test_rate) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
   double tau[2];
@@ -74,10 +72,9 @@ START_TEST(test_rate) {
   ck_assert_int_eq(step(&l, &s, still, 0.5, -0.5, tau), 0);
   ck_assert_uint_eq(s.counts[2], 5);
 }
-END_TEST
 
 /* A longer step may change more. */
-START_TEST(test_rate_over_missed_ticks) {
+TEST(test_rate_over_missed_ticks) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
   double tau[2] = {9, 0};
@@ -85,10 +82,9 @@ START_TEST(test_rate_over_missed_ticks) {
   ck_assert_int_eq(at(&pose, &l, &s, still, 0.005, tau), ETHD_GUARD_RATE);
   is(tau, 0.5, 0);
 }
-END_TEST
 
 /* Nearly as steep as the rate allows, for longer than anything steeper may last: nothing is cut, nothing stops. */
-START_TEST(test_slope_of_the_rate) {
+TEST(test_slope_of_the_rate) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
   double tau[2];
@@ -99,10 +95,9 @@ START_TEST(test_slope_of_the_rate) {
   }
   ck_assert_int_eq(s.stopping, 0);
 }
-END_TEST
 
 /* Torque before rate: both bits when both had to act; the rate's result stays within the torque limit. */
-START_TEST(test_torque_then_rate) {
+TEST(test_torque_then_rate) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
   double tau[2];
@@ -114,11 +109,10 @@ START_TEST(test_torque_then_rate) {
   ck_assert_int_eq(step(&l, &s, still, 5, 0.02, tau), ETHD_GUARD_TORQUE);
   is(tau, 0.25, 0.02);
 }
-END_TEST
 
 /* A limit that becomes narrower than the last torque is kept from its first tick on, whatever the rate allows:
    at 1 Nm with 10 mNm a tick, a limit of 0.1 Nm. */
-START_TEST(test_narrower_torque_at_once) {
+TEST(test_narrower_torque_at_once) {
   ethd_limits l = ethd_limits_none();
   double tau[2];
   l.torque_rate = 10;
@@ -134,10 +128,9 @@ START_TEST(test_narrower_torque_at_once) {
     is(tau, 0.1, -0.09);
   }
 }
-END_TEST
 
 /* Also where a rate is set, and the next torque rises from that zero. */
-START_TEST(test_finite_with_a_rate) {
+TEST(test_finite_with_a_rate) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {.last = {0.5, 0.5}, .asked = {0.5, 0.5}};
   double tau[2];
@@ -147,9 +140,8 @@ START_TEST(test_finite_with_a_rate) {
   (void)step(&l, &s, still, 0.5, 0.5, tau);
   is(tau, 0.1, 0.1);
 }
-END_TEST
 
-START_TEST(test_finite) {
+TEST(test_finite) {
   const double bad[] = {NAN, INFINITY, -INFINITY};
   ethd_limits l = ethd_limits_none();
   l.torque = 1;
@@ -162,11 +154,10 @@ START_TEST(test_finite) {
     ck_assert_uint_eq(s.counts[0], 1);
   }
 }
-END_TEST
 
 /* At first a tenth of the momentum, m v / 10 within a tick. When that is seen to be gone, the whole damping, until slower
    than 20 mm/s; then nothing, until cleared. */
-START_TEST(test_stop) {
+TEST(test_stop) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
   double tau[2];
@@ -185,10 +176,9 @@ START_TEST(test_stop) {
   is(tau, 0, 0);
   ck_assert_uint_eq(s.counts[3], 2);
 }
-END_TEST
 
 /* A torque that is held for several periods, as on a slow bus, is as much the smaller. */
-START_TEST(test_stop_that_is_held) {
+TEST(test_stop_that_is_held) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
   double tau[2] = {0, 0};
@@ -196,10 +186,9 @@ START_TEST(test_stop_that_is_held) {
   ck_assert_int_eq(at(&pose, &l, &s, (ethd_vec){0.3, 0}, 0.005, tau), ETHD_GUARD_SPEED);
   is(tau, 0.25 * -2 * 0.3, 0);
 }
-END_TEST
 
 /* Not a number is too fast, which nothing can brake, and out of any workspace that has a bound. */
-START_TEST(test_nan_fails) {
+TEST(test_nan_fails) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
   ethd_pose nowhere = pose;
@@ -211,9 +200,8 @@ START_TEST(test_nan_fails) {
   memset(&s, 0, sizeof s);
   ck_assert_int_eq(at(&nowhere, &l, &s, still, 0.001, tau), ETHD_GUARD_WORKSPACE);
 }
-END_TEST
 
-START_TEST(test_workspace) {
+TEST(test_workspace) {
   const double bounds[4] = {0.31, 0.29, 0.21, 0.19}; /* each leaves (0.3, 0.2) outside */
   for (int i = 0; i < 4; i++) {
     ethd_limits l = ethd_limits_none();
@@ -228,10 +216,9 @@ START_TEST(test_workspace) {
     ck_assert_uint_eq(s.counts[4], 1);
   }
 }
-END_TEST
 
 /* The stop obeys the torque limit, and no rate. */
-START_TEST(test_stop_and_the_other_limits) {
+TEST(test_stop_and_the_other_limits) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {.last = {0.4, 0}};
   double tau[2];
@@ -241,10 +228,9 @@ START_TEST(test_stop_and_the_other_limits) {
   ck_assert_int_eq(step(&l, &s, (ethd_vec){1, 0}, 0.4, 0, tau), ETHD_GUARD_SPEED | ETHD_GUARD_TORQUE);
   is(tau, -2, 0);
 }
-END_TEST
 
 /* Without latch only the tick of the breach is stopped. */
-START_TEST(test_without_latch) {
+TEST(test_without_latch) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
   double tau[2];
@@ -256,10 +242,9 @@ START_TEST(test_without_latch) {
   is(tau, 1, 1);
   ck_assert(s.stopping == 0 && s.stopped == 0);
 }
-END_TEST
 
 /* Programs print them: each has a name, a unit and a line that says what it is. */
-START_TEST(test_rows_say_what_they_are) {
+TEST(test_rows_say_what_they_are) {
   const char *const units[] = {"Nm", "Nm/s", "m/s", "m", "s", "rad", "J", NULL};
   for (int i = 0; i < ETHD_LIMITS; i++) {
     const ethd_limit *row = &ethd_limit_rows[i];
@@ -268,9 +253,8 @@ START_TEST(test_rows_say_what_they_are) {
     ck_assert(row->name[0] && row->brief[0] && *unit);
   }
 }
-END_TEST
 
-START_TEST(test_narrower) {
+TEST(test_narrower) {
   ethd_limits a = ethd_limits_none(), b = ethd_limits_none();
   a.torque = 1, b.torque = 2;
   b.torque_rate = 3;
@@ -289,29 +273,4 @@ START_TEST(test_narrower) {
   }
   b.latch = 0;
   ck_assert_int_eq(ethd_limits_narrower(&a, &b).latch, 0);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("guard");
-  TCase *t = tcase_create("guard");
-  tcase_add_test(t, test_no_limits);
-  tcase_add_test(t, test_torque);
-  tcase_add_test(t, test_rate);
-  tcase_add_test(t, test_rate_over_missed_ticks);
-  tcase_add_test(t, test_slope_of_the_rate);
-  tcase_add_test(t, test_torque_then_rate);
-  tcase_add_test(t, test_narrower_torque_at_once);
-  tcase_add_test(t, test_finite);
-  tcase_add_test(t, test_finite_with_a_rate);
-  tcase_add_test(t, test_stop);
-  tcase_add_test(t, test_stop_that_is_held);
-  tcase_add_test(t, test_nan_fails);
-  tcase_add_test(t, test_workspace);
-  tcase_add_test(t, test_stop_and_the_other_limits);
-  tcase_add_test(t, test_without_latch);
-  tcase_add_test(t, test_rows_say_what_they_are);
-  tcase_add_test(t, test_narrower);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -37,7 +37,7 @@ static ethd_vec wall(ethd_limits *l, double x, double y, double vx, double vy, i
 }
 
 /* 500 N/m and, on the way in, 10 Ns/m; it never pulls. */
-START_TEST(test_margin) {
+TEST(test_margin) {
   ethd_limits l = ethd_limits_none();
   int32_t bits;
   l.workspace[0] = 0.2, l.workspace[1] = 0.4, l.workspace[2] = 0, l.workspace[3] = 0.3;
@@ -58,10 +58,9 @@ START_TEST(test_margin) {
   wall(&l, 0.2, 0, 0, 0, &bits);
   ck_assert_int_eq(bits, 0);
 }
-END_TEST
 
 /* A ring of reach: along the radius. */
-START_TEST(test_margin_of_reach) {
+TEST(test_margin_of_reach) {
   ethd_limits l = ethd_limits_none();
   int32_t bits;
   l.reach[0] = 0.1, l.reach[1] = 0.5;
@@ -73,10 +72,9 @@ START_TEST(test_margin_of_reach) {
   ck_assert_double_eq_tol(f.x, 3, 1e-9);
   ck_assert_double_eq_tol(f.y, 4, 1e-9);
 }
-END_TEST
 
 /* The hard bounds stop: the workspace's, the reach's, the joints'. Degraded first, where there is a margin. */
-START_TEST(test_bounds) {
+TEST_LOOP(test_bounds, 0, 3) {
   rig r;
   moody_open(&r, 1);
   if (_i == 0) r.setup.limits.workspace[1] = 0.26;
@@ -98,7 +96,6 @@ START_TEST(test_bounds) {
   ck_assert(r.trace.fault == ETHD_FAULT_WORKSPACE && r.command.safe == 1);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- heat ---- */
 
@@ -112,7 +109,7 @@ static double reference(double heat, double load, double time, double dt) {
   return heat;
 }
 
-START_TEST(test_heat) {
+TEST(test_heat) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
   double heat[2] = {0, 0};
@@ -127,10 +124,9 @@ START_TEST(test_heat) {
     ck_assert_double_eq(hotter, fmax(s.heat[0], s.heat[1]));
   }
 }
-END_TEST
 
 /* Twice the nominal torque for ever: full until h = 0.9 after 0.255 time constants, then less, to the nominal. */
-START_TEST(test_fold_back) {
+TEST(test_fold_back) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
   double tau[2], last = INFINITY, full = 0;
@@ -149,10 +145,9 @@ START_TEST(test_fold_back) {
   /* the fold begins at 0.9 and cuts from 0.95 on: -2 ln(1 - 0.95 / 4) s */
   ck_assert_double_eq_tol(full * 0.001, -2 * log(1 - 0.95 / 4), 0.002);
 }
-END_TEST
 
 /* Hotter than 105 %: by a torque that was held over lost ticks. It cools, and may be acknowledged. */
-START_TEST(test_too_hot) {
+TEST(test_too_hot) {
   rig r;
   moody_open(&r, 1);
   r.setup.limits.nominal_torque = 0.1;
@@ -174,10 +169,9 @@ START_TEST(test_too_hot) {
   ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   rig_close(&r);
 }
-END_TEST
 
 /* One enormous torque leaves a heat that is a number: the motor stays without torque until it has cooled. */
-START_TEST(test_enormous_torque) {
+TEST(test_enormous_torque) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {.last = {1e200, 0}};
   l.nominal_torque = 0.1;
@@ -188,10 +182,9 @@ START_TEST(test_enormous_torque) {
   for (; t < 60 && (hotter = ethd_guard_heat(&l, &s, 0.001)) > 1; t += 0.001) ck_assert(isfinite(hotter));
   ck_assert_double_eq_tol(t, 3 * log(1e6 * 0.001 / 3), 0.1);
 }
-END_TEST
 
 /* An enabling forgets all but the heat. */
-START_TEST(test_restart) {
+TEST(test_restart) {
   rig r;
   moody_open(&r, 1);
   r.setup.limits.nominal_torque = 0.1;
@@ -210,12 +203,11 @@ START_TEST(test_restart) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* ---- torques ---- */
 
 /* Reported once, when it has lasted for 0.1 s. */
-START_TEST(test_cut) {
+TEST(test_cut) {
   rig r;
   moody_open(&r, 1);
   r.setup.limits.torque = 0.01;
@@ -230,10 +222,9 @@ START_TEST(test_cut) {
   ck_assert_uint_eq(counted(&r, ETHD_FAULT_TORQUE), 1);
   rig_close(&r);
 }
-END_TEST
 
 /* A step that the limiter follows for long is no fault; a law that goes up and down is, after 20 ticks. */
-START_TEST(test_steep) {
+TEST(test_steep) {
   rig r;
   moody_open(&r, 1);
   r.setup.limits.torque_rate = 1;
@@ -262,10 +253,9 @@ START_TEST(test_steep) {
   ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   rig_close(&r);
 }
-END_TEST
 
 /* Where faults don't latch each tick is judged alone. */
-START_TEST(test_steep_without_latch) {
+TEST(test_steep_without_latch) {
   rig r;
   moody_open(&r, 0);
   r.setup.limits.torque_rate = 1;
@@ -277,23 +267,4 @@ START_TEST(test_steep_without_latch) {
     ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   }
   rig_close(&r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("guard_limits");
-  TCase *t = tcase_create("guard_limits");
-  tcase_add_test(t, test_margin);
-  tcase_add_test(t, test_margin_of_reach);
-  tcase_add_loop_test(t, test_bounds, 0, 3);
-  tcase_add_test(t, test_heat);
-  tcase_add_test(t, test_fold_back);
-  tcase_add_test(t, test_too_hot);
-  tcase_add_test(t, test_enormous_torque);
-  tcase_add_test(t, test_restart);
-  tcase_add_test(t, test_cut);
-  tcase_add_test(t, test_steep);
-  tcase_add_test(t, test_steep_without_latch);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

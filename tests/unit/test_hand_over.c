@@ -82,7 +82,7 @@ static double difference(const ethd_transition_law *from, const ethd_transition_
 
 /* A press on noisy encoders steps without a swap, too. The most that the old law does within 0.4 s, or the fade's own
    slope, is what a swap may do. */
-START_TEST(test_laws_in_steady_press) {
+TEST_LOOP(test_laws_in_steady_press, 0, LAWS *LAWS) {
   const ethd_transition_law *from = laws[_i / LAWS], *to = laws[_i % LAWS];
   double without = 0, with = 0, slope = 0;
   for (int hand = 1; hand <= PRESSES; hand++) {
@@ -103,10 +103,9 @@ START_TEST(test_laws_in_steady_press) {
   ck_assert_msg(with <= most, "%s -> %s: %.4f Nm a tick; %.4f without, fade %.4f", from->law.id, to->law.id, with,
                 without, slope);
 }
-END_TEST
 
 /* Equal text, another number of the object, other company: the wall under the finger is the same to the bit. */
-START_TEST(test_equal_scene) {
+TEST_LOOP(test_equal_scene, 0, LAWS * 2) {
   static const char *const scenes[] = {RIG_WALL, "circle 0.6 0.6 0.05\n" RIG_WALL};
   press kept, swapped;
   begin(&kept, laws[_i / 2], 1);
@@ -127,10 +126,9 @@ START_TEST(test_equal_scene) {
   end(&swapped);
   ethd_scene_destroy(scene);
 }
-END_TEST
 
 /* A wall that stands elsewhere, or faces another way, is another one: what was at the old one ends there. */
-START_TEST(test_other_scene) {
+TEST_LOOP(test_other_scene, 0, 2) {
   static const char *const scenes[] = {"halfplane -1 0 -0.2381\n", "halfplane -1 0.001 -0.23775\n"};
   press p;
   begin(&p, &ethd_transition_offset, 1);
@@ -142,15 +140,4 @@ START_TEST(test_other_scene) {
   ck_assert(p.trace.state == ETHD_BRAKING && p.trace.eps == 0);
   end(&p);
   ethd_scene_destroy(scene);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("hand_over");
-  TCase *all = tcase_create("all");
-  tcase_add_loop_test(all, test_laws_in_steady_press, 0, LAWS * LAWS);
-  tcase_add_loop_test(all, test_equal_scene, 0, LAWS * 2);
-  tcase_add_loop_test(all, test_other_scene, 0, 2);
-  suite_add_tcase(suite, all);
-  return rig_run(suite);
 }

@@ -145,18 +145,17 @@ static void run(int number) {
   ethd_scene_destroy(wall);
 }
 
-START_TEST(test_everything_at_once) {
+TEST(test_everything_at_once) {
   const char *given = getenv("ETHD_HOSTILE");
   int runs = given ? atoi(given) : 300;
   for (int i = 0; i < runs; i++) run(i);
   printf("%d runs of %d ticks\n", runs, TICKS);
 }
-END_TEST
 
 /* ---- numbers at their ends ---- */
 
 /* Rays that lag, with stamps at both ends of time: the sanitizers see no overflow, and the ring no bad number. */
-START_TEST(test_stamps_at_the_ends) {
+TEST(test_stamps_at_the_ends) {
   const int64_t ends[] = {INT64_MIN, INT64_MIN + 1, INT64_MIN + 9000000, -1, 0, INT64_MAX - 9000000, INT64_MAX};
   rig r;
   rig_open(&r, RIG_WALL);
@@ -174,10 +173,9 @@ START_TEST(test_stamps_at_the_ends) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* The age that a drive says of its reading: what can't be isn't one, and no reading comes of it. */
-START_TEST(test_age_of_a_reading) {
+TEST(test_age_of_a_reading) {
   static const double ages[] = {0, 0.004, 10, NAN, -0.001, 10.1, 1e300, INFINITY, -INFINITY};
   for (size_t i = 0; i < sizeof ages / sizeof *ages; i++) {
     static ethd__servo_map map;
@@ -199,16 +197,4 @@ START_TEST(test_age_of_a_reading) {
     ck_assert_int_eq((f.sample.has & ETHD__SERVO_HAS_READING) != 0, is_good);
     if (is_good) ck_assert_int_eq(f.sample.reading_ns, 50000000 - (int64_t)(1e9 * ages[i]));
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("hostile");
-  TCase *t = tcase_create("hostile");
-  tcase_add_test(t, test_everything_at_once);
-  tcase_add_test(t, test_stamps_at_the_ends);
-  tcase_add_test(t, test_age_of_a_reading);
-  tcase_set_timeout(t, 240);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -1,11 +1,10 @@
 /* Predictions side by side are those that the simulator makes one by one, for every kind of arm; a plant that runs away
    stands still, and what is beside it is told nothing wrong of its own past. */
-#include <check.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "identify/predict.h"
+#include "unit/suite.h"
 
 enum { TICKS = 250, BACK = 8 };
 
@@ -48,7 +47,7 @@ static double farthest(const double *a, const double *b) {
   return most;
 }
 
-START_TEST(alike) {
+TEST_LOOP(alike, 0, 8) {
   bool serial = _i & 1, elastic = _i & 2, coupled = _i & 4;
   const double states[ETHD__ARMS][ETHD__STATE_MOST] = {
       {1.4, 0.2, 0.3, -0.2}, {1.4, 0.2, 0.3, -0.2}, {1.5, 0.2, 0, 0}, {1.4, 0.1, -0.3, 0.4, 1e-3, 0, 0, 0.01}};
@@ -71,10 +70,9 @@ START_TEST(alike) {
   }
   ck_assert_double_gt(farthest(all[0], all[1]), 1e-5); /* a later torque is seen */
 }
-END_TEST
 
 /* Fewer than all: the same as when the others' places are taken by itself; and again, to the bit. */
-START_TEST(repeats) {
+TEST(repeats) {
   double a[2 * TICKS], b[2 * TICKS];
   const double state[ETHD__STATE_MOST] = {1.4, 0.2, 0.3, -0.2};
   ethd__predictor p;
@@ -85,9 +83,8 @@ START_TEST(repeats) {
   ethd__predict_many((ethd__forecast[]){{&p, state, b}, {&p, state, b}, {&p, state, b}, {&p, state, b}}, 4, &shot);
   ck_assert_mem_eq(a, b, sizeof a);
 }
-END_TEST
 
-START_TEST(runs_away) {
+TEST(runs_away) {
   double one[2 * TICKS], many[2 * TICKS];
   const double state[ETHD__STATE_MOST] = {1.4, 0.2, 0.3, -0.2};
   ethd__predictor p;
@@ -100,19 +97,4 @@ START_TEST(runs_away) {
   ethd__predict_many(&(ethd__forecast){&p, state, many}, 1, &shot);
   for (int i = 0; i < 2 * TICKS; i++) ck_assert(isfinite(one[i]) && isfinite(many[i]));
   ck_assert(one[2 * TICKS - 1] == one[2 * TICKS - 3] && many[2 * TICKS - 1] == many[2 * TICKS - 3]);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("identify_predict");
-  TCase *all = tcase_create("all");
-  tcase_add_loop_test(all, alike, 0, 8);
-  tcase_add_test(all, repeats);
-  tcase_add_test(all, runs_away);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

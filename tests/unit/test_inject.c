@@ -8,6 +8,7 @@
 #include "inject/inject.h"
 #include "mutate.h"
 #include "rig.h"
+#include "unit/suite.h"
 
 #define MS 1000000
 
@@ -128,7 +129,7 @@ static double at(double ms) { return 1e-3 * (41 + ms); }
 
 static void close_script(spoilt *x) { x->driver->close(x->device); }
 
-START_TEST(test_values) {
+TEST(test_values) {
   spoilt x = open_script("0.002 q1 freeze for=0.003\n"
                          "3t q2 offset by=0.5 # one sample\n"
                          "0.006 q reverse for=0.002\n"
@@ -151,10 +152,9 @@ START_TEST(test_values) {
   ck_assert_double_eq(f[0].value, 3 + 1 + 2 + 1 + 1 + 1 + 1);
   close_script(&x);
 }
-END_TEST
 
 /* Each channel's own numbers and no others; a channel that the sample hasn't got stays as it is. */
-START_TEST(test_channels) {
+TEST(test_channels) {
   spoilt x = open_script("0 dq1 offset by=1 for=0.002\n0 finger2 value by=7 for=0.002\n0 centre nan for=0.002\n"
                          "0 ring1 scale by=2 for=0.002\n0 time freeze for=0.002\n");
   p.has_more = true;
@@ -178,10 +178,9 @@ START_TEST(test_channels) {
   ck_assert_double_eq(f.value, 0);
   close_script(&x);
 }
-END_TEST
 
 /* What isn't spoilt is the device's own: its limits, units, end and remarks, after one that says what this is. */
-START_TEST(test_passes_on) {
+TEST(test_passes_on) {
   spoilt x = open_script("1 q1 nan\n");
   ck_assert_str_eq(x.driver->remark(x.device, 0), "faults are injected: this is no run to trust");
   ck_assert_ptr_null(x.driver->remark(x.device, 1));
@@ -194,9 +193,8 @@ START_TEST(test_passes_on) {
   ck_assert_int_eq(x.driver->stop(x.device), ETHD_OK);
   close_script(&x);
 }
-END_TEST
 
-START_TEST(test_noise) {
+TEST(test_noise) {
   spoilt x = open_script("0 q1 noise by=0.1 for=inf\n");
   double least = 1, most = -1;
   for (int ms = 0; ms < 1000; ms++) {
@@ -207,9 +205,8 @@ START_TEST(test_noise) {
   ck_assert(least >= -0.1 - 1e-12 && least < -0.099 && most <= 0.1 + 1e-12 && most > 0.099);
   close_script(&x);
 }
-END_TEST
 
-START_TEST(test_readings) {
+TEST(test_readings) {
   spoilt x = open_script("0 ray5 nan for=0.004\n"
                          "0.006 reading drop\n"
                          "0.009 reading delay by=0.004 for=0.001\n"
@@ -231,10 +228,9 @@ START_TEST(test_readings) {
   }
   close_script(&x);
 }
-END_TEST
 
 /* A reading in R_0 stays one, and keeps its noise, whether it passes or comes late. */
-START_TEST(test_world) {
+TEST(test_world) {
   spoilt x = open_script("0.003 reading delay by=0.002\n0.006 reading freeze\n");
   p.is_world = true;
   for (int ms = 0; ms < 10; ms++) {
@@ -250,9 +246,8 @@ START_TEST(test_world) {
   }
   close_script(&x);
 }
-END_TEST
 
-START_TEST(test_calls) {
+TEST(test_calls) {
   spoilt x = open_script("2t read fail\n4t read stale for=0.002\n"
                          "0.001 write fail\n0.002 write drop\n0.003 write scale by=0.5\n"
                          "0.005 write delay by=0.002 for=0.002\n"
@@ -276,9 +271,8 @@ START_TEST(test_calls) {
   ck_assert_int_eq(p.safes, 1);
   close_script(&x);
 }
-END_TEST
 
-START_TEST(test_rows_and_start) {
+TEST(test_rows_and_start) {
   spoilt x = open_script("0.001 fault9 set for=0.002\n0.002 fault11 grave\n0.002 read stale\n");
   ck_assert_int_eq(sample(&x)->faults, 0);
   ck_assert_int_eq(sample(&x)->faults, ETHD_FAULT_BIT(9));
@@ -298,10 +292,9 @@ START_TEST(test_rows_and_start) {
   ck_assert_int_eq(ethd__driver_inject.start(device), ETHD_E_DEVICE);
   ethd__driver_inject.close(device);
 }
-END_TEST
 
 /* What has come into the sense before, by a sample that was held, isn't spoilt twice. */
-START_TEST(test_adds_once) {
+TEST(test_adds_once) {
   spoilt x = open_script("0 rays offset by=1 for=inf\n0 q offset by=1 for=inf\n");
   p.says = ETHD_STATUS_STALE;
   sample(&x);
@@ -314,7 +307,6 @@ START_TEST(test_adds_once) {
   ck_assert_double_eq_tol(x.s.q[0], 1 + at(1), 1e-12);
   close_script(&x);
 }
-END_TEST
 
 /* ---- what a script may say ---- */
 
@@ -347,16 +339,15 @@ static const struct {
     {"1e300 q1 nan", "1e300"},
 };
 
-START_TEST(test_refused) {
+TEST_LOOP(test_refused, 0, sizeof bad / sizeof *bad) {
   ethd__script script;
   char message[ETHD_MESSAGE_MAX] = "";
   ck_assert_int_lt(ethd__script_parse(bad[_i].text, strlen(bad[_i].text), "s", 0.001, &script, message), 0);
   ck_assert_msg(strstr(message, bad[_i].says) && !strncmp(message, "s:", 2), "%s", message);
   ck_assert_ptr_null(script.at);
 }
-END_TEST
 
-START_TEST(test_no_file) {
+TEST(test_no_file) {
   ethd_setup setup = ethd_setup_default();
   const ethd_setting settings[] = {{"inject", "missing.inject", 3}};
   const ethd_device_def def = {&setup, settings, 1, "/nowhere", "c.ini", 1};
@@ -367,9 +358,8 @@ START_TEST(test_no_file) {
   ck_assert_msg(strstr(message, "/nowhere/missing.inject"), "%s", message);
   ck_assert(!d && !device);
 }
-END_TEST
 
-START_TEST(test_mutations) {
+TEST(test_mutations) {
   static const char seed[] = "# a script\n0.5 q1 freeze for=0.1\n612t rays nan for=inf\n0.7 reading delay by=0.02\n"
                              "0.9 fault9 set\n1 write scale by=-1e0 for=1\n";
   static const char *const words[] = {"ray16", "fault38", " for=", " by=", "inf", "nan",
@@ -389,25 +379,4 @@ START_TEST(test_mutations) {
     ethd__script_free(&script);
   }
   ck_assert(good > 1000 && good < 19000);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("inject");
-  TCase *t = tcase_create("inject");
-  tcase_set_timeout(t, 60);
-  tcase_add_test(t, test_values);
-  tcase_add_test(t, test_channels);
-  tcase_add_test(t, test_passes_on);
-  tcase_add_test(t, test_noise);
-  tcase_add_test(t, test_readings);
-  tcase_add_test(t, test_world);
-  tcase_add_test(t, test_calls);
-  tcase_add_test(t, test_rows_and_start);
-  tcase_add_test(t, test_adds_once);
-  tcase_add_loop_test(t, test_refused, 0, sizeof bad / sizeof *bad);
-  tcase_add_test(t, test_no_file);
-  tcase_add_test(t, test_mutations);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

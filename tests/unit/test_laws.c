@@ -7,7 +7,7 @@
 
 /* ---- tracking ---- */
 
-START_TEST(test_pd) {
+TEST(test_pd) {
   const double p[] = {40, 1, 0};
   double state[64] = {0}, tau[2];
   ethd_tracking_in in = {.eps_q = {0.01, -0.02}, .eps_q_dot = {0.5, 0.25}, .period = 0.001};
@@ -15,10 +15,9 @@ START_TEST(test_pd) {
   ck_assert_double_eq_tol(tau[0], 0.4 + 0.5, 1e-15);
   ck_assert_double_eq_tol(tau[1], -0.8 + 0.25, 1e-15);
 }
-END_TEST
 
 /* Backward difference of eps_q: 0 at the first tick; a longer step divides by its own length. */
-START_TEST(test_pd_difference) {
+TEST(test_pd_difference) {
   const double p[] = {0, 2, 1};
   double state[64] = {0}, tau[2];
   ethd_tracking_in in = {.eps_q = {0.01, 0.03}, .eps_q_dot = {7, 7}, .period = 0.001};
@@ -35,7 +34,6 @@ START_TEST(test_pd_difference) {
   (void)!ethd_tracking_pd.step(p, state, &in, tau);
   ck_assert_double_eq_tol(tau[0], 2 * 2.5, 1e-12);
 }
-END_TEST
 
 /* ---- contact ---- */
 
@@ -60,13 +58,12 @@ static const force_case forces[] = {
     {&ethd_contact_hunt_crossley, {1000, 2}, 0, 9, 1, 0},
 };
 
-START_TEST(test_forces) {
+TEST_LOOP(test_forces, 0, sizeof forces / sizeof *forces) {
   const force_case *c = &forces[_i];
   double state[64] = {0}, force = 99;
   ck_assert_int_eq(c->law->step(c->p, state, c->gap, c->speed, c->entering, &force), ETHD_OK);
   ck_assert_double_eq_tol(force, c->force, 1e-14);
 }
-END_TEST
 
 /* ---- transition ---- */
 
@@ -93,7 +90,7 @@ static ethd_ruling rule(const ethd_transition_law *law, const double *p, void *s
   return r;
 }
 
-START_TEST(test_abrupt) {
+TEST(test_abrupt) {
   double state[64] = {0};
   ethd_contact c = contact_at(0, 0.3, -0.001);
   ethd_ruling r = rule(&ethd_transition_abrupt, NULL, state, &c);
@@ -102,10 +99,9 @@ START_TEST(test_abrupt) {
   r = rule(&ethd_transition_abrupt, NULL, state, &c);
   ck_assert(r.beta == 0 && r.share == 1 && r.state == ETHD_VO && r.offset == 0 && r.damping == 0);
 }
-END_TEST
 
 /* eq. 4: beta_min at and behind the wall, 1 above d_beta, a line between. */
-START_TEST(test_smooth) {
+TEST(test_smooth) {
   const double p[] = {0.1}, d[] = {-0.001, 0, 0.001, 0.002, 0.004, 0.0040001, 1};
   const double beta[] = {0.1, 0.1, 0.325, 0.55, 1, 1, 1};
   double state[64] = {0};
@@ -117,7 +113,6 @@ START_TEST(test_smooth) {
     ck_assert_int_eq(r.state, i % 2 ? ETHD_VO : ETHD_TRANSPARENT);
   }
 }
-END_TEST
 
 /* One tick of VO-B, and what is to come of it. */
 typedef struct arrow {
@@ -174,22 +169,20 @@ static const arrow arrows[][9] = {
     {{-0.001, 0.4, 1, 0}, {-0.001, 0, 2, 0.001}, {0.0041, -9, 0, 0}, {-0.0001, 9, 1, 0}, {-0.0001, 0, 2, 0.0001}, LAST},
 };
 
-START_TEST(test_arrows) {
+TEST_LOOP(test_arrows, 0, sizeof arrows / sizeof *arrows) {
   walk(product, arrows[_i]);
   walk(paper, arrows[_i]);
 }
-END_TEST
 
-START_TEST(test_cap_of_depth) {
+TEST(test_cap_of_depth) {
   const arrow with[] = {{-0.001, 0.4, 1, 0}, {-0.0059, 0.4, 1, 0}, {-0.006, 0.4, 2, 0.006}, LAST};
   const arrow without[] = {{-0.001, 0.4, 1, 0}, {-0.0059, 0.4, 1, 0}, {-0.006, 0.4, 1, 0}, {-0.5, 0.4, 1, 0}, LAST};
   walk(product, with);
   walk(paper, without);
 }
-END_TEST
 
 /* 50 ticks of 1 ms after the first of braking; out of it above d_beta all the same. */
-START_TEST(test_cap_of_time) {
+TEST(test_cap_of_time) {
   for (int out = 0; out < 2; out++) {
     double capped[64] = {0}, paper_like[64] = {0};
     for (int tick = 0; tick <= 200; tick++) {
@@ -204,10 +197,9 @@ START_TEST(test_cap_of_time) {
     }
   }
 }
-END_TEST
 
 /* Time counts, not ticks: a step of 10 periods brings the cap nearer by ten. */
-START_TEST(test_cap_of_time_with_missed_ticks) {
+TEST(test_cap_of_time_with_missed_ticks) {
   double state[64] = {0};
   ethd_contact c = contact_at(-0.001, 0.1, 0.01);
   (void)rule(&ethd_transition_offset, product, state, &c);
@@ -215,10 +207,9 @@ START_TEST(test_cap_of_time_with_missed_ticks) {
   for (int i = 0; i < 4; i++) ck_assert_int_eq(rule(&ethd_transition_offset, product, state, &c).state, ETHD_BRAKING);
   ck_assert_int_eq(rule(&ethd_transition_offset, product, state, &c).state, ETHD_VO);
 }
-END_TEST
 
 /* Any period, any cap that is a whole number of periods. */
-START_TEST(test_cap_of_time_is_exact) {
+TEST(test_cap_of_time_is_exact) {
   for (int n = 1; n <= 400; n += 7)
     for (int k = 1; k <= 20; k++) {
       double state[64] = {0}, p[] = {100, 0.020, 0.1, INFINITY, n * (k * 1e-4)};
@@ -229,10 +220,9 @@ START_TEST(test_cap_of_time_is_exact) {
       ck_assert_int_eq(ticks, n);
     }
 }
-END_TEST
 
 /* The tables say what configuration files may rely on. */
-START_TEST(test_defaults) {
+TEST(test_defaults) {
   const ethd_setup s = ethd_setup_default();
   const double transition[] = {100, 0.020, 0.1, 0.006, 0.050}, tracking[] = {40, 1, 0}, contact[] = {2500, 45};
   ck_assert_mem_eq(s.transition_p, transition, sizeof transition);
@@ -240,23 +230,4 @@ START_TEST(test_defaults) {
   ck_assert_mem_eq(s.contact_p, contact, sizeof contact);
   ck_assert(s.swap_time == 0.020 && s.v_hysteresis == 0 && s.period == 0.001 && s.ring_radius == 0.012);
   ck_assert(s.finger_radius == 0.0075 && s.finger_radius_max == 0.0095 && s.arm.mechanism == ETHD_ARM_PARALLEL);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("laws");
-  TCase *t = tcase_create("laws");
-  tcase_add_test(t, test_pd);
-  tcase_add_test(t, test_pd_difference);
-  tcase_add_loop_test(t, test_forces, 0, sizeof forces / sizeof *forces);
-  tcase_add_test(t, test_abrupt);
-  tcase_add_test(t, test_smooth);
-  tcase_add_loop_test(t, test_arrows, 0, sizeof arrows / sizeof *arrows);
-  tcase_add_test(t, test_cap_of_depth);
-  tcase_add_test(t, test_cap_of_time);
-  tcase_add_test(t, test_cap_of_time_with_missed_ticks);
-  tcase_add_test(t, test_cap_of_time_is_exact);
-  tcase_add_test(t, test_defaults);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -35,7 +35,7 @@ int ioctl(int fd, unsigned long request, ...) {
 }
 
 /* A rate is right within 2 %: 115384 is what 48 MHz give for 115200. 9600 for a rate that the line doesn't know isn't. */
-START_TEST(test_another_rate) {
+TEST(test_another_rate) {
   static const struct {
     uint32_t asked, has;
     bool good;
@@ -59,9 +59,8 @@ START_TEST(test_another_rate) {
   }
   close(master);
 }
-END_TEST
 
-START_TEST(test_any_rate) {
+TEST(test_any_rate) {
   static const uint32_t rates[] = {9600, 115200, 250000, 400000, 500000, 1000000, 2000000, 12345};
   int master = pty_open(NULL, path), fd;
   ck_assert_int_ge(master, 0);
@@ -75,9 +74,8 @@ START_TEST(test_any_rate) {
   }
   close(master);
 }
-END_TEST
 
-START_TEST(test_every_byte) {
+TEST(test_every_byte) {
   int master = pty_open(NULL, path), fd;
   unsigned char sent[256], got[256];
   ck_assert_int_eq(ethd__line_open(path, ETHD__LINE_8N1, 500000, &fd, message), ETHD_OK);
@@ -92,9 +90,8 @@ START_TEST(test_every_byte) {
   close(fd);
   close(master);
 }
-END_TEST
 
-START_TEST(test_ours_alone) {
+TEST(test_ours_alone) {
   int master = pty_open(NULL, path), fd, other;
   ck_assert_int_eq(ethd__line_open(path, ETHD__LINE_8N1, 500000, &fd, message), ETHD_OK);
   ck_assert_int_eq(ethd__line_open(path, ETHD__LINE_8N1, 500000, &other, message), ETHD_E_DEVICE);
@@ -105,10 +102,9 @@ START_TEST(test_ours_alone) {
   close(fd);
   close(master);
 }
-END_TEST
 
 /* Another user opens a line after it was closed, and after the program that had it was killed. */
-START_TEST(test_again_without_rights) {
+TEST(test_again_without_rights) {
   int master = pty_open(NULL, path), fd, status;
   ck_assert_int_eq(chmod(path, 0666), 0);
   pid_t child = fork();
@@ -124,27 +120,12 @@ START_TEST(test_again_without_rights) {
   ck_assert(WIFEXITED(status) && WEXITSTATUS(status) == 0);
   close(master);
 }
-END_TEST
 
-START_TEST(test_refused) {
+TEST(test_refused) {
   int fd;
   ck_assert_int_eq(ethd__line_open("/nowhere/ttyUSB0", ETHD__LINE_8N1, 500000, &fd, message), ETHD_E_DEVICE);
   ck_assert_str_eq(message, "/nowhere/ttyUSB0: No such file or directory");
   ck_assert_int_eq(ethd__line_open("/dev/null", ETHD__LINE_8N1, 500000, &fd, message), ETHD_E_DEVICE);
   ck_assert_str_eq(message, "/dev/null: isn't a serial line");
   ck_assert_int_eq(fd, -1);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("line");
-  TCase *tc = tcase_create("line");
-  tcase_add_test(tc, test_another_rate);
-  tcase_add_test(tc, test_any_rate);
-  tcase_add_test(tc, test_every_byte);
-  tcase_add_test(tc, test_ours_alone);
-  tcase_add_test(tc, test_again_without_rights);
-  tcase_add_test(tc, test_refused);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }

@@ -1,15 +1,14 @@
 /* Text is the same in every locale, rounding and set of traps of the thread, which has them back. Run by tests/locale.sh in
    hosts with a decimal comma, too. */
-#include <check.h>
 #include <errno.h>
 #include <fenv.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include "ethd/ethd.h"
 #include "text/csv.h"
 #include "text/error_text.h"
 #include "text/text.h"
+#include "unit/suite.h"
 
 static const char *const words[] = {"0.1", "0.3", "-0.7", "1e23", "4.9e-324", "1.7976931348623157e308"};
 #define WORDS (sizeof words / sizeof *words)
@@ -35,7 +34,7 @@ static void work(char out[2048]) {
   }
 }
 
-START_TEST(test_rounding) {
+TEST(test_rounding) {
   static const int modes[] = {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
   char expected[2048], found[2048];
   work(expected);
@@ -50,9 +49,8 @@ START_TEST(test_rounding) {
     ck_assert_str_eq(found, expected);
   }
 }
-END_TEST
 
-START_TEST(test_traps) {
+TEST(test_traps) {
   const int traps = FE_OVERFLOW | FE_UNDERFLOW | FE_INEXACT | FE_INVALID | FE_DIVBYZERO;
   double v;
   char text[32];
@@ -64,9 +62,8 @@ START_TEST(test_traps) {
   ck_assert_int_eq(after, traps);
   ck_assert_str_eq(text, "1e-320");
 }
-END_TEST
 
-START_TEST(test_thread_locale) {
+TEST(test_thread_locale) {
   locale_t own = newlocale(LC_ALL_MASK, "", (locale_t)0), before = uselocale(own);
   double v;
   char text[32];
@@ -77,19 +74,4 @@ START_TEST(test_thread_locale) {
   ck_assert(uselocale((locale_t)0) == own);
   uselocale(before);
   freelocale(own);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("locale");
-  TCase *all = tcase_create("all");
-  tcase_add_test(all, test_rounding);
-  tcase_add_test(all, test_traps);
-  tcase_add_test(all, test_thread_locale);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed != 0;
 }

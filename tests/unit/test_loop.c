@@ -7,7 +7,7 @@
 
 /* ---- the grid ---- */
 
-START_TEST(test_ticks_stand_on_the_grid) {
+TEST(test_ticks_stand_on_the_grid) {
   bench b;
   ethd_loop_stats s;
   bench_open(&b);
@@ -23,7 +23,6 @@ START_TEST(test_ticks_stand_on_the_grid) {
   ck_assert_int_eq(b.d.services, 10);
   bench_close(&b);
 }
-END_TEST
 
 /* A tick of `busy` ns, from tick 3: the next one is on the grid, and knows what it missed. Exactly at the next
    instant is in time. */
@@ -32,7 +31,7 @@ static const struct {
 } busy_ticks[] = {{PERIOD / 2, 0}, {PERIOD, 0},         {PERIOD + 1, 1},     {2 * PERIOD - 1, 1},
                   {2 * PERIOD, 1}, {2 * PERIOD + 1, 2}, {7 * PERIOD / 2, 3}, {100 * PERIOD, 99}};
 
-START_TEST(test_overruns_are_counted_and_realigned) {
+TEST_LOOP(test_overruns_are_counted_and_realigned, 0, sizeof busy_ticks / sizeof *busy_ticks) {
   bench b;
   ethd_loop_stats s;
   int64_t missed = busy_ticks[_i].missed;
@@ -48,10 +47,9 @@ START_TEST(test_overruns_are_counted_and_realigned) {
   ck_assert_int_eq(s.tick.max, busy_ticks[_i].busy);
   bench_close(&b);
 }
-END_TEST
 
 /* The clock ran on while the loop slept (preempted, suspended). */
-START_TEST(test_late_wake_up_is_an_overrun) {
+TEST(test_late_wake_up_is_an_overrun) {
   bench b;
   ethd_loop_stats s;
   bench_open(&b);
@@ -69,10 +67,9 @@ START_TEST(test_late_wake_up_is_an_overrun) {
   ck_assert_int_eq(s.wake.max, 2 * PERIOD + PERIOD / 4);
   bench_close(&b);
 }
-END_TEST
 
 /* The step's duration reaches the next step: the budget guard lives on it. A virtual step takes no time. */
-START_TEST(test_two_runs_are_equal) {
+TEST(test_two_runs_are_equal) {
   bench *b = calloc(2, sizeof *b);
   for (int k = 0; k < 2; k++) {
     bench_open(&b[k]);
@@ -88,11 +85,10 @@ START_TEST(test_two_runs_are_equal) {
   bench_close(&b[1]);
   free(b);
 }
-END_TEST
 
 /* ---- what the device gets ---- */
 
-START_TEST(test_soft_start) {
+TEST(test_soft_start) {
   bench b;
   bench_open(&b);
   b.def.soft_start = 0.004;
@@ -107,9 +103,8 @@ START_TEST(test_soft_start) {
   }
   bench_close(&b);
 }
-END_TEST
 
-START_TEST(test_disarm_and_enable) {
+TEST(test_disarm_and_enable) {
   bench b;
   bench_open(&b);
   bench_start(&b);
@@ -130,10 +125,9 @@ START_TEST(test_disarm_and_enable) {
   ck_assert(b.d.written[4].torque[0] != 0);
   bench_close(&b);
 }
-END_TEST
 
 /* Nobody knows what state a device is in that couldn't be started: it gets no torque, also if it had one before. */
-START_TEST(test_failed_enable_disarms) {
+TEST_LOOP(test_failed_enable_disarms, 0, 3) {
   static const ethd_status gives[] = {ETHD_E_DEVICE, ETHD_E_FILE, ETHD_STATUS_BUSY};
   bench b;
   bench_open(&b);
@@ -152,10 +146,9 @@ START_TEST(test_failed_enable_disarms) {
   ck_assert_int_eq(bench_tick(&b).armed, 1);
   bench_close(&b);
 }
-END_TEST
 
 /* A second start would put the clock's grid and the soft start back under a device that has its torque. */
-START_TEST(test_starts_once) {
+TEST(test_starts_once) {
   bench b;
   ethd_error error;
   bench_open(&b);
@@ -170,10 +163,9 @@ START_TEST(test_starts_once) {
   ck_assert_int_eq(ethd_loop_start(b.loop, NULL), ETHD_E_ARGUMENT);
   bench_close(&b);
 }
-END_TEST
 
 /* A device that can't be read: the same tick gives zero torque, latched, until acknowledged and enabled. */
-START_TEST(test_failed_read_disarms) {
+TEST(test_failed_read_disarms) {
   bench b;
   bench_open(&b);
   b.d.fail_read = 2;
@@ -193,9 +185,8 @@ START_TEST(test_failed_read_disarms) {
   ck_assert(b.d.written[5].safe);
   bench_close(&b);
 }
-END_TEST
 
-START_TEST(test_failed_write_disarms) {
+TEST(test_failed_write_disarms) {
   bench b;
   ethd_loop_stats s;
   bench_open(&b);
@@ -209,9 +200,8 @@ START_TEST(test_failed_write_disarms) {
   ck_assert_uint_eq(s.write_failures, 1);
   bench_close(&b);
 }
-END_TEST
 
-START_TEST(test_zero_torque_is_the_last_thing) {
+TEST(test_zero_torque_is_the_last_thing) {
   bench b;
   bench_open(&b);
   bench_start(&b);
@@ -224,10 +214,9 @@ START_TEST(test_zero_torque_is_the_last_thing) {
   bench_close(&b);
   ck_assert_int_eq(b.d.writes, 2);
 }
-END_TEST
 
 /* Rows without room are counted, and the next one says how many. */
-START_TEST(test_lost_rows) {
+TEST(test_lost_rows) {
   bench b;
   ethd_loop_row row;
   ethd_loop_stats s;
@@ -249,13 +238,12 @@ START_TEST(test_lost_rows) {
   ck_assert_uint_eq(s.rows_lost, 3);
   bench_close(&b);
 }
-END_TEST
 
 /* ---- refusals ---- */
 
 static uint32_t too_many(const void *d) { return (void)d, ETHD_UNITS_MAX + 1; }
 
-START_TEST(test_refused_defs) {
+TEST(test_refused_defs) {
   bench b;
   ethd_error error;
   bench_open(&b);
@@ -316,18 +304,16 @@ START_TEST(test_refused_defs) {
   REFUSED(rows, 1u << 21, ETHD_E_RANGE);
   rig_close(&b.r);
 }
-END_TEST
 
 /* ---- histogram ---- */
 
-START_TEST(test_bins_join) {
+TEST(test_bins_join) {
   for (uint32_t bin = 0; bin + 1 < ETHD_BINS; bin++) {
     int64_t first = ethd_histogram_first(bin), last = ethd_histogram_last(bin);
     ck_assert(first <= last && last + 1 == ethd_histogram_first(bin + 1));
     ck_assert(bin < 64 ? first == last : (last - first) * 32 < first);
   }
 }
-END_TEST
 
 static int by_size(const void *a, const void *b) {
   int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
@@ -335,7 +321,7 @@ static int by_size(const void *a, const void *b) {
 }
 
 /* The answer is in the bin of the sorted list's element, over it by at most 1/32. */
-START_TEST(test_percentiles_against_a_sort) {
+TEST(test_percentiles_against_a_sort) {
   enum { N = 20000 };
   static int64_t ns[N];
   static ethd_histogram h;
@@ -356,9 +342,8 @@ START_TEST(test_percentiles_against_a_sort) {
   ck_assert_int_eq(ethd_histogram_at(&h, 1), ns[N - 1]);
   ck_assert_int_eq(h.max, ns[N - 1]);
 }
-END_TEST
 
-START_TEST(test_histogram_ends) {
+TEST(test_histogram_ends) {
   static ethd_histogram h;
   ck_assert_int_eq(ethd_histogram_at(&h, 0.5), 0);
   ethd_histogram_add(&h, -5);
@@ -368,38 +353,12 @@ START_TEST(test_histogram_ends) {
   ck_assert_int_eq(ethd_histogram_at(&h, 1), INT64_MAX);
   ck_assert_int_eq(ethd_histogram_at(&h, 0.5), 0);
 }
-END_TEST
 
 /* Every shortfall has words, and nothing else has. */
-START_TEST(test_shortfalls_have_words) {
+TEST(test_shortfalls_have_words) {
   for (int i = 0; i < ETHD_SHORT_COUNT; i++) {
     ck_assert_str_ne(ethd_shortfall_sentence(1 << i), ethd_shortfall_sentence(1 << ETHD_SHORT_COUNT));
     ck_assert_uint_gt(strlen(ethd_shortfall_mend(1 << i)), 10);
   }
   ck_assert_str_eq(ethd_shortfall_mend(3), "");
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("loop");
-  TCase *t = tcase_create("loop");
-  tcase_add_test(t, test_ticks_stand_on_the_grid);
-  tcase_add_loop_test(t, test_overruns_are_counted_and_realigned, 0, sizeof busy_ticks / sizeof *busy_ticks);
-  tcase_add_test(t, test_late_wake_up_is_an_overrun);
-  tcase_add_test(t, test_two_runs_are_equal);
-  tcase_add_test(t, test_soft_start);
-  tcase_add_test(t, test_disarm_and_enable);
-  tcase_add_loop_test(t, test_failed_enable_disarms, 0, 3);
-  tcase_add_test(t, test_starts_once);
-  tcase_add_test(t, test_failed_read_disarms);
-  tcase_add_test(t, test_failed_write_disarms);
-  tcase_add_test(t, test_zero_torque_is_the_last_thing);
-  tcase_add_test(t, test_lost_rows);
-  tcase_add_test(t, test_refused_defs);
-  tcase_add_test(t, test_bins_join);
-  tcase_add_test(t, test_percentiles_against_a_sort);
-  tcase_add_test(t, test_histogram_ends);
-  tcase_add_test(t, test_shortfalls_have_words);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

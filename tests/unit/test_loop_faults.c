@@ -21,7 +21,7 @@ static const struct {
                   {6 * PERIOD, 1, BIT(OVERRUN)},
                   {6 * PERIOD + 1, 1, BIT(OVERRUN) | BIT(OVERRUNS)}};
 
-START_TEST(test_late) {
+TEST_LOOP(test_late, 0, sizeof late_ticks / sizeof *late_ticks) {
   bench b;
   ethd_loop_stats stats;
   bench_open(&b);
@@ -36,7 +36,6 @@ START_TEST(test_late) {
   ck_assert_uint_eq(stats.faults[ETHD_FAULT_OVERRUNS], (uint64_t)stops);
   bench_close(&b);
 }
-END_TEST
 
 /* The machine is suspended between two ticks: the loop's clock hasn't moved. */
 static const struct {
@@ -50,7 +49,7 @@ static const struct {
                    {3600000 * (int64_t)PERIOD, 1, 0, BIT(CLOCK), 3600000},
                    {3600000 * (int64_t)PERIOD, 0, BIT(CLOCK), 0, 3600000}};
 
-START_TEST(test_suspended) {
+TEST_LOOP(test_suspended, 0, sizeof suspensions / sizeof *suspensions) {
   bench b;
   int64_t suspended = 7777777; /* before the loop was there */
   bench_open(&b);
@@ -70,7 +69,6 @@ START_TEST(test_suspended) {
   ck_assert_int_eq(bench_tick(&b).trace.fault, ETHD_FAULT_NONE);
   bench_close(&b);
 }
-END_TEST
 
 /* The device's own limit is as good as the application's. */
 static ethd_limits strict(const void *d) {
@@ -78,7 +76,7 @@ static ethd_limits strict(const void *d) {
   return ethd_limits_device();
 }
 
-START_TEST(test_limit_of_the_device) {
+TEST(test_limit_of_the_device) {
   bench b;
   bench_open(&b);
   ethd_driver own = *b.def.driver;
@@ -90,10 +88,9 @@ START_TEST(test_limit_of_the_device) {
   ck_assert_int_eq(rows_of_tick(&b), BIT(OVERRUN) | BIT(OVERRUNS));
   bench_close(&b);
 }
-END_TEST
 
 /* Five short ones in a row fill the bucket, one in eleven don't, one in five do in the end. */
-START_TEST(test_often_late) {
+TEST_LOOP(test_often_late, 0, 3) {
   const int every[] = {1, 11, 5};
   bench b;
   bench_open(&b);
@@ -106,9 +103,8 @@ START_TEST(test_often_late) {
   ck_assert_int_eq(at, _i == 0 ? 5 : _i == 1 ? -1 : 36); /* 10 + 6 k >= 50, k = 7 */
   bench_close(&b);
 }
-END_TEST
 
-START_TEST(test_silent_application) {
+TEST(test_silent_application) {
   bench b;
   bench_open(&b);
   b.def.heartbeat = 0.010;
@@ -124,9 +120,8 @@ START_TEST(test_silent_application) {
   ck_assert_int_eq(bench_tick(&b).trace.fault, ETHD_FAULT_APPLICATION);
   bench_close(&b);
 }
-END_TEST
 
-START_TEST(test_raise) {
+TEST(test_raise) {
   bench b;
   bench_open(&b);
   bench_start(&b);
@@ -144,10 +139,9 @@ START_TEST(test_raise) {
   ck_assert(b.d.written[b.d.writes - 1].safe == 1 && b.d.written[b.d.writes - 1].torque[0] == 0);
   bench_close(&b);
 }
-END_TEST
 
 /* Counts outlive the reset of an enabling. */
-START_TEST(test_counts_over_an_enabling) {
+TEST(test_counts_over_an_enabling) {
   bench b;
   ethd_loop_stats stats;
   bench_open(&b);
@@ -162,7 +156,6 @@ START_TEST(test_counts_over_an_enabling) {
   ck_assert_uint_eq(stats.faults[ETHD_FAULT_EMERGENCY_STOP], 3);
   bench_close(&b);
 }
-END_TEST
 
 /* A joint sample that is due but not there; what the device says meanwhile. */
 static struct {
@@ -203,7 +196,7 @@ static int rows_made(bench *b, ethd_loop_row *row) {
 }
 
 /* Rows that only count wait for the next sample, and come with it; so does whatever else has come meanwhile. */
-START_TEST(test_holds_without_a_sample) {
+TEST_LOOP(test_holds_without_a_sample, 0, NOTHING_NEW) {
   bench b;
   ethd_driver own;
   ethd_loop_row row;
@@ -217,10 +210,9 @@ START_TEST(test_holds_without_a_sample) {
   ck_assert(row.trace.sense.q[0] == b.d.sense.q[0] && row.armed && row.trace.fault == 0);
   bench_close(&b);
 }
-END_TEST
 
 /* Somebody who disarms doesn't wait for a sample. */
-START_TEST(test_disarms_without_a_sample) {
+TEST(test_disarms_without_a_sample) {
   bench b;
   ethd_driver own;
   ethd_loop_row row;
@@ -235,10 +227,9 @@ START_TEST(test_disarms_without_a_sample) {
   ck_assert_int_eq(b.d.safes, 1);
   bench_close(&b);
 }
-END_TEST
 
 /* A row that ends the torque doesn't wait: the step knows the joints as they were last. */
-START_TEST(test_ends_without_a_sample) {
+TEST(test_ends_without_a_sample) {
   bench b;
   ethd_driver own;
   ethd_loop_row row, last;
@@ -252,7 +243,6 @@ START_TEST(test_ends_without_a_sample) {
   ck_assert(row.trace.x[0] == last.trace.x[0] && row.trace.x[1] == last.trace.x[1]);
   bench_close(&b);
 }
-END_TEST
 
 /* Ticks from the last sample to the one that ends the torque, by the gap in periods: so far two steps may be apart. The
    row that is named is the device's, and lasts as long as the samples are old. */
@@ -261,7 +251,7 @@ static const struct {
   int ticks;
 } olds[] = {{0, 60}, {100, 60}, {20.5, 20}, {5, 5}, {2, 2}, {1, 1}};
 
-START_TEST(test_old_samples) {
+TEST_LOOP(test_old_samples, 0, NOTHING_NEW * sizeof olds / sizeof *olds) {
   const int way = _i / NOTHING_NEW;
   bench b;
   ethd_driver own;
@@ -291,7 +281,6 @@ START_TEST(test_old_samples) {
   ck_assert_int_eq(ethd_control_poll(b.r.control, &e), ETHD_STATUS_EMPTY);
   bench_close(&b);
 }
-END_TEST
 
 /* A law that takes its time: 0.1 s is the step's budget without any limit. */
 static int64_t *law_clock, law_takes;
@@ -301,7 +290,7 @@ static ethd_status dawdle(const double *p, void *state, const ethd_tracking_in *
   return ethd_tracking_pd.step(p, state, in, tau);
 }
 
-START_TEST(test_budget_without_a_limit) {
+TEST(test_budget_without_a_limit) {
   const int64_t takes[] = {100000000, 100000001};
   for (int over = 0; over < 2; over++) {
     bench b;
@@ -326,9 +315,8 @@ START_TEST(test_budget_without_a_limit) {
     bench_close(&b);
   }
 }
-END_TEST
 
-START_TEST(test_bad_bounds) {
+TEST(test_bad_bounds) {
   const double bad[] = {NAN, -1, 0, 0.0009};
   bench b;
   bench_open(&b);
@@ -341,25 +329,4 @@ START_TEST(test_bad_bounds) {
   }
   b.loop = NULL;
   bench_close(&b);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("loop_faults");
-  TCase *t = tcase_create("loop_faults");
-  tcase_add_loop_test(t, test_late, 0, sizeof late_ticks / sizeof *late_ticks);
-  tcase_add_loop_test(t, test_suspended, 0, sizeof suspensions / sizeof *suspensions);
-  tcase_add_test(t, test_limit_of_the_device);
-  tcase_add_loop_test(t, test_often_late, 0, 3);
-  tcase_add_test(t, test_silent_application);
-  tcase_add_test(t, test_raise);
-  tcase_add_test(t, test_counts_over_an_enabling);
-  tcase_add_loop_test(t, test_holds_without_a_sample, 0, NOTHING_NEW);
-  tcase_add_test(t, test_disarms_without_a_sample);
-  tcase_add_test(t, test_ends_without_a_sample);
-  tcase_add_loop_test(t, test_old_samples, 0, NOTHING_NEW * sizeof olds / sizeof *olds);
-  tcase_add_test(t, test_budget_without_a_limit);
-  tcase_add_test(t, test_bad_bounds);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

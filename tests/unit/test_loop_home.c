@@ -27,7 +27,7 @@ static void open_with_home(bench *b) {
   bench_start(b);
 }
 
-START_TEST(test_no_home) {
+TEST(test_no_home) {
   bench b;
   bench_open(&b);
   bench_start(&b);
@@ -37,9 +37,8 @@ START_TEST(test_no_home) {
   ck_assert_int_eq(bench_tick(&b).trace.tick, 1);
   bench_close(&b);
 }
-END_TEST
 
-START_TEST(test_armed) {
+TEST(test_armed) {
   bench b;
   open_with_home(&b);
   bench_tick(&b);
@@ -49,9 +48,8 @@ START_TEST(test_armed) {
   ck_assert(row.trace.tick == 1 && row.armed == 1);
   bench_close(&b);
 }
-END_TEST
 
-START_TEST(test_pose_jumps) {
+TEST(test_pose_jumps) {
   const double q[2] = {0.3, -0.4};
   bench b;
   open_with_home(&b);
@@ -65,10 +63,9 @@ START_TEST(test_pose_jumps) {
   ck_assert(row.armed == 0 && b.d.written[2].safe && b.d.starts == 0); /* homed isn't enabled */
   bench_close(&b);
 }
-END_TEST
 
 /* No driver is told an angle that no joint can have. */
-START_TEST(test_no_angles) {
+TEST(test_no_angles) {
   const double bad[] = {NAN, INFINITY, -INFINITY, -1.001 * ETHD_SENSE_ANGLE_MAX};
   bench b;
   open_with_home(&b);
@@ -83,9 +80,8 @@ START_TEST(test_no_angles) {
   ck_assert_int_eq(bench_tick(&b).trace.tick, 1);
   bench_close(&b);
 }
-END_TEST
 
-START_TEST(test_home_fails) {
+TEST(test_home_fails) {
   bench b;
   open_with_home(&b);
   ethd_loop_disarm(b.loop);
@@ -96,10 +92,9 @@ START_TEST(test_home_fails) {
   ck_assert_int_eq(bench_tick(&b).trace.tick, 1);
   bench_close(&b);
 }
-END_TEST
 
 /* What the controller knows of a fault stays until somebody acknowledges it. */
-START_TEST(test_fault_stays) {
+TEST(test_fault_stays) {
   bench b;
   open_with_home(&b);
   b.d.fail_read = 1;
@@ -110,18 +105,4 @@ START_TEST(test_fault_stays) {
   ck_assert_int_eq(row.trace.fault, ETHD_FAULT_INPUT);
   ck_assert_int_eq(row.trace.tick, 2);
   bench_close(&b);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("loop_home");
-  TCase *t = tcase_create("loop_home");
-  tcase_add_test(t, test_no_home);
-  tcase_add_test(t, test_armed);
-  tcase_add_test(t, test_pose_jumps);
-  tcase_add_test(t, test_no_angles);
-  tcase_add_test(t, test_home_fails);
-  tcase_add_test(t, test_fault_stays);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -1,7 +1,6 @@
 /* Accuracy against long double, special cases, symmetries, and the same bits everywhere. */
 #include "ethd/maths.h"
 
-#include <check.h>
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -12,6 +11,7 @@
 #endif
 
 #include "maths/two_waves.h"
+#include "unit/suite.h"
 
 #define PI_2 0x1.921fb54442d18469898cc517018p+0L
 
@@ -131,7 +131,7 @@ static const accuracy accuracies[] = {
 
 enum { ACCURACIES = sizeof accuracies / sizeof accuracies[0] };
 
-START_TEST(test_accuracy) {
+TEST_LOOP(test_accuracy, 0, LDBL_MANT_DIG < 64 ? 0 : ACCURACIES) {
   const accuracy *a = &accuracies[_i];
   for (uint64_t i = 0; i < POINTS; i++) {
     double x = a->point(i);
@@ -140,14 +140,13 @@ START_TEST(test_accuracy) {
     if (!(error < a->bound)) ck_abort_msg("%s: %.3f ulp at %a", a->name, error, x);
   }
 }
-END_TEST
 
 static void check_atan2(double y, double x) {
   double error = ulps(ethd_atan2(y, x), atan2l(y, x));
   if (!(error < 0.51)) ck_abort_msg("atan2: %.3f ulp at (%a, %a)", error, y, x);
 }
 
-START_TEST(test_atan2_accuracy) {
+TEST_LOOP(test_atan2_accuracy, 0, LDBL_MANT_DIG >= 64) {
   for (uint64_t i = 0; i < POINTS; i++) {
     double x = uniform(2 * i, -1, 1), y = uniform(2 * i + 1, -1, 1);
     double ratio = (double)(i % 33) / 16 - 1; /* the borders between rows, and the rows */
@@ -161,11 +160,10 @@ START_TEST(test_atan2_accuracy) {
     check_atan2(any_finite(2 * i), any_finite(2 * i + 1));
   }
 }
-END_TEST
 
 /* The double that comes nearest to a multiple of pi/2 (Muller, Elementary Functions, table 11.1), the
    one below 2^20 that asks most of the three parts of pi/2, and a large one; values from 400 digits. */
-START_TEST(test_hardest_reduction) {
+TEST(test_hardest_reduction) {
   double x = 6381956970095103.0 * 0x1p797;
   ck_assert_double_eq(ethd_cos(x), -4.687165924254627611122583e-19);
   ck_assert_double_eq(ethd_sin(x), 1);
@@ -174,7 +172,6 @@ START_TEST(test_hardest_reduction) {
   ck_assert_double_eq_tol(ethd_sin(0x1p1023), 0.5631277798508840134529434, 2e-16);
   ck_assert_double_eq_tol(ethd_cos(0x1p1023), -0.8263698346141479945007857, 2e-16);
 }
-END_TEST
 
 /* ---- special cases ---- */
 
@@ -184,7 +181,7 @@ END_TEST
   } while (0)
 #define IS_NAN(got) SAME(got, (double)NAN)
 
-START_TEST(test_special_cases) {
+TEST(test_special_cases) {
   const double inf = HUGE_VAL, nan = -(double)NAN;
 
   SAME(ethd_sin(0.0), 0.0);
@@ -225,10 +222,9 @@ START_TEST(test_special_cases) {
   SAME(ethd_tanh(1e300), 1.0);
   IS_NAN(ethd_tanh(nan));
 }
-END_TEST
 
 /* C11 F.10.1.4, in its order. */
-START_TEST(test_atan2_special_cases) {
+TEST(test_atan2_special_cases) {
   const double pi = (double)(2 * PI_2), inf = HUGE_VAL, nan = -(double)NAN;
 
   for (int negative = 0; negative < 2; negative++) {
@@ -256,11 +252,10 @@ START_TEST(test_atan2_special_cases) {
     IS_NAN(ethd_atan2(nan, nan));
   }
 }
-END_TEST
 
 /* ---- properties ---- */
 
-START_TEST(test_symmetry) {
+TEST(test_symmetry) {
   for (uint64_t i = 0; i < POINTS; i++) {
     double x = i % 2 ? turns(i) : any_finite(i), y = any_finite(i + POINTS), s, c;
 
@@ -279,10 +274,9 @@ START_TEST(test_symmetry) {
   SAME(s, -0.0);
   SAME(c, 1.0);
 }
-END_TEST
 
 /* Side by side as one by one: angles of all sizes, and those next to multiples of pi/4. */
-START_TEST(test_two_at_once) {
+TEST(test_two_at_once) {
   for (uint64_t i = 0; i < POINTS; i++) {
     two x = {i % 3 ? turns(i) : any_finite(i), i % 5 ? many_turns(i) : near_eighth_turns(i)};
     two_waves w = two_sincos(x);
@@ -292,9 +286,8 @@ START_TEST(test_two_at_once) {
     }
   }
 }
-END_TEST
 
-START_TEST(test_monotonic) {
+TEST(test_monotonic) {
   double before[4] = {-2, -1, -2000, -4};
   for (int i = -POINTS; i <= POINTS; i++) {
     double u = (double)i / POINTS, a = (double)(2 * PI_2) * u * (1 - 1e-9);
@@ -306,7 +299,6 @@ START_TEST(test_monotonic) {
     }
   }
 }
-END_TEST
 
 /* ---- the same bits everywhere ---- */
 
@@ -339,46 +331,14 @@ static uint64_t golden(void) {
 
 static const uint64_t golden_hash = 0x6cba1c17bc660b0bu;
 
-START_TEST(test_golden) { ck_assert_uint_eq(golden(), golden_hash); }
-END_TEST
+TEST(test_golden) { ck_assert_uint_eq(golden(), golden_hash); }
 
 #ifdef __SSE2__
-START_TEST(test_golden_without_subnormals) {
+TEST(test_golden_without_subnormals) {
   unsigned before = _mm_getcsr();
   _mm_setcsr(before | 0x8040); /* FTZ, DAZ */
   uint64_t hash = golden();
   _mm_setcsr(before);
   ck_assert_uint_eq(hash, golden_hash);
 }
-END_TEST
 #endif
-
-int main(void) {
-  Suite *suite = suite_create("maths");
-  TCase *of_accuracy = tcase_create("accuracy"), *of_cases = tcase_create("cases");
-
-  if (LDBL_MANT_DIG >= 64) {
-    tcase_add_loop_test(of_accuracy, test_accuracy, 0, ACCURACIES);
-    tcase_add_test(of_accuracy, test_atan2_accuracy);
-  }
-  tcase_add_test(of_cases, test_hardest_reduction);
-  tcase_add_test(of_cases, test_special_cases);
-  tcase_add_test(of_cases, test_atan2_special_cases);
-  tcase_add_test(of_cases, test_symmetry);
-  tcase_add_test(of_cases, test_two_at_once);
-  tcase_add_test(of_cases, test_monotonic);
-  tcase_add_test(of_cases, test_golden);
-#ifdef __SSE2__
-  tcase_add_test(of_cases, test_golden_without_subnormals);
-#endif
-  tcase_set_timeout(of_accuracy, 60); /* sanitizers on a busy machine */
-  tcase_set_timeout(of_cases, 60);
-  suite_add_tcase(suite, of_accuracy);
-  suite_add_tcase(suite, of_cases);
-
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
-}

@@ -1,5 +1,4 @@
 /* NumPy files: laid out as the format says, readable while they grow, strict when read. */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,6 +8,7 @@
 #include "ethd/record.h"
 #include "mutate.h"
 #include "record/npy_parts.h"
+#include "unit/suite.h"
 
 typedef struct row {
   int64_t n;
@@ -63,7 +63,7 @@ static void write_file(const char *bytes, size_t length) {
 }
 
 /* The header byte by byte, from the format's own description. */
-START_TEST(test_layout) {
+TEST(test_layout) {
   ethd_npy *npy;
   static char file[16384];
   ck_assert_int_eq(ethd_npy_create(path, columns, sizeof(row), &npy, message), ETHD_OK);
@@ -84,9 +84,8 @@ START_TEST(test_layout) {
     ck_assert(memcmp(file + 10 + header + (size_t)i * sizeof r, &r, sizeof r) == 0);
   }
 }
-END_TEST
 
-START_TEST(test_readable_while_it_grows) {
+TEST(test_readable_while_it_grows) {
   ethd_npy *npy;
   void *rows;
   size_t count;
@@ -107,7 +106,6 @@ START_TEST(test_readable_while_it_grows) {
   }
   ck_assert_int_eq(ethd_npy_close(npy), ETHD_OK);
 }
-END_TEST
 
 static void check_refused(const char *bytes, size_t length, const char *says) {
   void *rows;
@@ -120,7 +118,7 @@ static void check_refused(const char *bytes, size_t length, const char *says) {
   ck_assert_str_eq(message, expected);
 }
 
-START_TEST(test_bad_files) {
+TEST(test_bad_files) {
   static char file[16384], bad[16384];
   ethd_npy *npy;
   ck_assert_int_eq(ethd_npy_create(path, columns, sizeof(row), &npy, message), ETHD_OK);
@@ -145,9 +143,8 @@ START_TEST(test_bad_files) {
   memcpy(bad + (shape - file), "999999999999999999,), }", 23);
   check_refused(bad, n, "cut short: 5 rows of 999999999999999999 are there");
 }
-END_TEST
 
-START_TEST(test_bad_columns) {
+TEST(test_bad_columns) {
   static const ethd_column gap[] = {{"n", "1", 1, 0, 'i'}, {"y", "m", 1, 136, 'f'}, {NULL, NULL, 0, 0, 0}};
   ethd_npy *npy;
   ck_assert_int_eq(ethd_npy_create(path, gap, sizeof(row), &npy, message), ETHD_E_ARGUMENT);
@@ -155,17 +152,15 @@ START_TEST(test_bad_columns) {
   ck_assert_int_eq(ethd_npy_create("/nowhere/x.npy", columns, sizeof(row), &npy, message), ETHD_E_FILE);
   ck_assert_str_eq(message, "/nowhere/x.npy: No such file or directory");
 }
-END_TEST
 
-START_TEST(test_full_disk) {
+TEST(test_full_disk) {
   ethd_npy *npy;
   ethd_status status = ethd_npy_create("/dev/full", columns, sizeof(row), &npy, message);
   ck_assert_int_eq(status, ETHD_E_FILE);
 }
-END_TEST
 
 /* A trace's columns cover it without a gap, in the order of its fields. */
-START_TEST(test_trace_columns) {
+TEST(test_trace_columns) {
   size_t at = 0, count = 0;
   for (const ethd_column *c = ethd_trace_columns; c->name; c++, count++) {
     ck_assert_uint_eq(c->offset, at);
@@ -177,9 +172,8 @@ START_TEST(test_trace_columns) {
   ck_assert_str_eq(ethd_trace_columns[count - 1].name, "learnt");
   ck_assert_uint_eq(ethd_trace_columns[count - 1].offset, offsetof(ethd_trace, learnt));
 }
-END_TEST
 
-START_TEST(test_mutations) {
+TEST(test_mutations) {
   static const char *const words[] = {"9", "0", ",", "(", "'", "\n", " ", "\x93NUMPY", "}", NULL};
   static char file[4096], text[8192];
   ethd_npy *npy;
@@ -199,24 +193,5 @@ START_TEST(test_mutations) {
   }
   ck_assert_int_gt(accepted, 100);
 }
-END_TEST
 
-int main(void) {
-  Suite *suite = suite_create("npy");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_checked_fixture(all, set_up, tear_down);
-  tcase_add_test(all, test_layout);
-  tcase_add_test(all, test_readable_while_it_grows);
-  tcase_add_test(all, test_bad_files);
-  tcase_add_test(all, test_bad_columns);
-  tcase_add_test(all, test_full_disk);
-  tcase_add_test(all, test_trace_columns);
-  tcase_add_test(all, test_mutations);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
-}
+FIXTURE(set_up, tear_down)

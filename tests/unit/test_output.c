@@ -1,6 +1,5 @@
 /* What is written: folders that are claimed, files that are replaced, names and cells that are made of other people's
    words, messages that keep their reason. */
-#include <check.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
@@ -18,6 +17,7 @@
 #include "text/error_text.h"
 #include "text/file_name.h"
 #include "text/text.h"
+#include "unit/suite.h"
 
 static const char *const own[] = {"a.csv", "*.png", NULL};
 static char message[ETHD_MESSAGE_MAX], folder[64], out[96];
@@ -60,7 +60,7 @@ static bool holds(const char *name, const char *text) {
 
 /* ---- folders ---- */
 
-START_TEST(test_claim) {
+TEST(test_claim) {
   ethd__claim claim, other;
   ck_assert_msg(!ethd__claim_folder(in("dir"), own, false, &claim, message), "%s", message);
   ck_assert_int_lt(ethd__claim_folder(in("dir"), own, true, &other, message), 0);
@@ -77,9 +77,8 @@ START_TEST(test_claim) {
   ck_assert_int_eq(access(in("dir/a.csv"), F_OK), -1);
   ethd__claim_release(&claim);
 }
-END_TEST
 
-START_TEST(test_claim_leaves_what_isnt_its_own) {
+TEST(test_claim_leaves_what_isnt_its_own) {
   ethd__claim claim;
   put("b.csv", "mine");
   put("x.png", "mine too");
@@ -93,9 +92,8 @@ START_TEST(test_claim_leaves_what_isnt_its_own) {
   ck_assert_int_eq(ethd__claim_folder(in("b.csv"), own, true, &claim, message), ETHD_E_FILE);
   ck_assert_ptr_nonnull(strstr(message, "b.csv: Not a directory"));
 }
-END_TEST
 
-START_TEST(test_inputs_are_known) {
+TEST(test_inputs_are_known) {
   put("a.csv", "in");
   put("b.csv", "other");
   ck_assert(ethd__claim_holds(folder, own, in("a.csv")));
@@ -104,7 +102,6 @@ START_TEST(test_inputs_are_known) {
   ck_assert_int_eq(symlink("a.csv", in("x.png")), 0);
   ck_assert(ethd__claim_holds(folder, own, in("x.png")));
 }
-END_TEST
 
 /* ---- files ---- */
 
@@ -118,7 +115,7 @@ static int news(void) {
 }
 
 /* What a killed program left goes with the next run; what a living one writes stays. */
-START_TEST(test_left_files_go) {
+TEST(test_left_files_go) {
   ethd_replace living;
   put("a.csv", "old");
   pid_t child = fork();
@@ -139,10 +136,9 @@ START_TEST(test_left_files_go) {
   ck_assert(!ethd_replace_commit(&living, message));
   ck_assert(holds("a.csv", "newest"));
 }
-END_TEST
 
 /* /dev/stdout is a file here: what was printed before and after stands around it. */
-START_TEST(test_own_stdout_is_written_through) {
+TEST(test_own_stdout_is_written_through) {
   int saved = dup(STDOUT_FILENO), file = open(out, O_RDWR | O_CREAT | O_TRUNC, 0666);
   fflush(stdout);
   dup2(file, STDOUT_FILENO);
@@ -156,7 +152,6 @@ START_TEST(test_own_stdout_is_written_through) {
   close(file);
   close(saved);
 }
-END_TEST
 
 static bool refuses(const char *path, const char *says) {
   message[0] = 0;
@@ -170,7 +165,7 @@ static bool is_link(const char *name) {
 }
 
 /* Only a regular file is replaced, or nothing. */
-START_TEST(test_links_and_devices_stay) {
+TEST(test_links_and_devices_stay) {
   put("b.csv", "old");
   ck_assert_int_eq(symlink("b.csv", out), 0);
   ck_assert(!ethd_text_write(out, "new", 3, message));
@@ -190,10 +185,9 @@ START_TEST(test_links_and_devices_stay) {
   ck_assert(refuses(out, "a.csv: isn't a file; nothing is replaced"));
   close(socket_fd);
 }
-END_TEST
 
 /* /dev/stdout and its like name a descriptor that the program was started with, and no file of its own. */
-START_TEST(test_descriptors_by_name) {
+TEST(test_descriptors_by_name) {
   char name[32];
   put("a.csv", "old");
   int file = open(out, O_WRONLY | O_APPEND);
@@ -210,10 +204,9 @@ START_TEST(test_descriptors_by_name) {
   close(file);
   ck_assert(holds("a.csv", "old new"));
 }
-END_TEST
 
 /* A file of ours never becomes standard output. */
-START_TEST(test_streams_keep_their_numbers) {
+TEST(test_streams_keep_their_numbers) {
   ethd_replace replace;
   int saved = dup(STDOUT_FILENO);
   fflush(stdout);
@@ -227,11 +220,10 @@ START_TEST(test_streams_keep_their_numbers) {
   ck_assert_int_gt(number, STDERR_FILENO);
   ethd_replace_abandon(&replace);
 }
-END_TEST
 
 /* ---- words ---- */
 
-START_TEST(test_cells_of_text) {
+TEST(test_cells_of_text) {
   static const char *const cells[][2] = {{"=1+1", "'=1+1"},   {"+x", "'+x"},        {"-x", "'-x"},
                                          {"@x", "'@x"},       {"-1.5", "-1.5"},     {"+2", "+2"},
                                          {"-", "-"},          {"a=b", "a=b"},       {"\x1b[2J", "\" [2J\""},
@@ -247,9 +239,8 @@ START_TEST(test_cells_of_text) {
     ck_assert_msg(holds("a.csv", wanted), "%s", cells[i][0]);
   }
 }
-END_TEST
 
-START_TEST(test_file_names) {
+TEST(test_file_names) {
   static const char *const good[] = {"P01", "low", "0.3", "a_b-c", "-1", "x.csv"};
   static const char *const bad[] = {"",
                                     ".",
@@ -280,9 +271,8 @@ START_TEST(test_file_names) {
   ck_assert_uint_eq(strlen(name), ETHD_FILE_NAME_MAX - 1);
   ck_assert_str_eq(name + strlen(name) - 5, "x.csv");
 }
-END_TEST
 
-START_TEST(test_long_paths_keep_the_reason) {
+TEST(test_long_paths_keep_the_reason) {
   char path[2000];
   memset(path, 'p', sizeof path);
   path[0] = '/', path[sizeof path - 1] = 0;
@@ -297,28 +287,5 @@ START_TEST(test_long_paths_keep_the_reason) {
   (void)ethd__say(message, ETHD_OK, "%s", exact);
   ck_assert_str_eq(message, exact);
 }
-END_TEST
 
-int main(void) {
-  Suite *suite = suite_create("output");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_checked_fixture(all, set_up, tear_down);
-  tcase_add_test(all, test_claim);
-  tcase_add_test(all, test_claim_leaves_what_isnt_its_own);
-  tcase_add_test(all, test_inputs_are_known);
-  tcase_add_test(all, test_left_files_go);
-  tcase_add_test(all, test_own_stdout_is_written_through);
-  tcase_add_test(all, test_links_and_devices_stay);
-  tcase_add_test(all, test_descriptors_by_name);
-  tcase_add_test(all, test_streams_keep_their_numbers);
-  tcase_add_test(all, test_cells_of_text);
-  tcase_add_test(all, test_file_names);
-  tcase_add_test(all, test_long_paths_keep_the_reason);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
-}
+FIXTURE(set_up, tear_down)

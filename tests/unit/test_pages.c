@@ -1,6 +1,5 @@
 /* The screen's pages in windows from 320x200 to 4K: no text lies on another, on the room, or over the edge. With
    ETHD_PAGES=DIR each is written there as a picture (BMP). */
-#include <check.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +8,7 @@
 #include "screen/letters.h"
 #include "study/dictionary.h"
 #include "study/progress.h"
+#include "unit/suite.h"
 
 static const int sizes[][2] = {{320, 200}, {640, 400}, {720, 1280}, {1366, 768}, {3840, 2160}};
 enum { SIZES = sizeof sizes / sizeof *sizes };
@@ -138,7 +138,7 @@ static void check_words(void) {
   draw("hand-over", &page, 5);
 }
 
-START_TEST(test_no_text_lies_on_another) {
+TEST(test_no_text_lies_on_another) {
   for (int i = 0; i < SIZES; i++) {
     open_at(sizes[i][0], sizes[i][1]);
     check_room();
@@ -147,7 +147,6 @@ START_TEST(test_no_text_lies_on_another) {
     close_it();
   }
 }
-END_TEST
 
 /* ---- a study in German ---- */
 
@@ -209,7 +208,7 @@ static void meet_in_german(void) {
   draw_german("german-hand-over", &page, 5);
 }
 
-START_TEST(test_a_study_in_german) {
+TEST(test_a_study_in_german) {
   static const char *const said[] = {"gültig   (2 von 3)\n",
                                      "0.43 m/s, es zählen 0.32 bis 0.48 m/s\n",
                                      "Den Kreis zur grauen Linie führen und warten\n",
@@ -237,9 +236,8 @@ START_TEST(test_a_study_in_german) {
   }
   ethd__protocol_free(&protocol);
 }
-END_TEST
 
-START_TEST(test_letters_that_the_font_lacks) {
+TEST(test_letters_that_the_font_lacks) {
   static const struct {
     const char *study, *message;
   } cases[] = {
@@ -258,10 +256,9 @@ START_TEST(test_letters_that_the_font_lacks) {
   }
   close_it();
 }
-END_TEST
 
 /* Letters are as large as the window allows, and large again on the next page. */
-START_TEST(test_letters_shrink_only_where_they_must) {
+TEST(test_letters_shrink_only_where_they_must) {
   open_at(320, 200);
   check_words();
   int low = TTF_FontHeight(screen.window.font[ETHD_TEXT_SMALL]);
@@ -275,21 +272,4 @@ START_TEST(test_letters_shrink_only_where_they_must) {
   check_room();
   ck_assert(screen.window.shrink > 0.8);
   close_it();
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("pages");
-  TCase *tests = tcase_create("pages");
-  tcase_set_timeout(tests, 60);
-  tcase_add_test(tests, test_no_text_lies_on_another);
-  tcase_add_test(tests, test_letters_shrink_only_where_they_must);
-  tcase_add_test(tests, test_a_study_in_german);
-  tcase_add_test(tests, test_letters_that_the_font_lacks);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed != 0;
 }

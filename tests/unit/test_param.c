@@ -1,10 +1,9 @@
 /* Parameter tables and sentences of statuses. */
-#include <check.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "ethd/param.h"
+#include "unit/suite.h"
 
 static const ethd_param good[] = {
     {"k_e", "N/m", 0, 1e6, 2500, "stiffness"},
@@ -12,12 +11,11 @@ static const ethd_param good[] = {
     {"derivative", "velocity|difference|none", 0, 2, 1, "of what"},
 };
 
-START_TEST(test_good_table) {
+TEST(test_good_table) {
   ethd_error error;
   ck_assert_int_eq(ethd_params_check_table(good, 3, &error), ETHD_OK);
   ck_assert_int_eq(ethd_params_check_table(NULL, 0, NULL), ETHD_OK);
 }
-END_TEST
 
 typedef struct bad {
   ethd_param row;
@@ -51,7 +49,7 @@ static const bad bads[] = {
     {{"k_e", "1", 0, 1, 0, "b"}, "a name twice"},
 };
 
-START_TEST(test_bad_tables) {
+TEST(test_bad_tables) {
   for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
     ethd_param table[2] = {good[0], bads[i].row};
     ethd_error error;
@@ -71,7 +69,6 @@ START_TEST(test_bad_tables) {
   ck_assert_int_eq(ethd_params_check_table(many, ETHD_PARAMS_MAX + 1, NULL), ETHD_E_TABLE);
   ck_assert_int_eq(ethd_params_check_table(NULL, 1, NULL), ETHD_E_TABLE);
 }
-END_TEST
 
 static ethd_status check_one(int row, double value, ethd_error *error) {
   double values[3];
@@ -80,7 +77,7 @@ static ethd_status check_one(int row, double value, ethd_error *error) {
   return ethd_params_check(good, 3, values, error);
 }
 
-START_TEST(test_values) {
+TEST(test_values) {
   static const struct {
     int row;
     double value;
@@ -111,9 +108,8 @@ START_TEST(test_values) {
     ck_assert(error.found == cases[i].value || (isnan(error.found) && isnan(cases[i].value)));
   }
 }
-END_TEST
 
-START_TEST(test_defaults_and_names) {
+TEST(test_defaults_and_names) {
   double values[4] = {-1, -1, -1, -7};
   ethd_params_default(good, 3, values);
   ck_assert(values[0] == 2500 && values[1] == 0.006 && values[2] == 1 && values[3] == -7);
@@ -123,9 +119,8 @@ START_TEST(test_defaults_and_names) {
   ck_assert_int_eq(ethd_params_find(good, 3, "k_e2"), -1);
   ck_assert_int_eq(ethd_params_find(good, 3, ""), -1);
 }
-END_TEST
 
-START_TEST(test_words) {
+TEST(test_words) {
   ck_assert_uint_eq(ethd_param_words(&good[0]), 0);
   ck_assert_uint_eq(ethd_param_words(&good[2]), 3);
   ck_assert_int_eq(ethd_param_word(&good[2], "velocity"), 0);
@@ -137,9 +132,8 @@ START_TEST(test_words) {
   ck_assert_int_eq(ethd_param_word(&good[2], ""), -1);
   ck_assert_int_eq(ethd_param_word(&good[0], "N/m"), -1);
 }
-END_TEST
 
-START_TEST(test_sentences) {
+TEST(test_sentences) {
   int names = 0;
   for (int s = -40; s <= 10; s++) {
     const char *sentence = ethd_status_sentence((ethd_status)s);
@@ -153,22 +147,4 @@ START_TEST(test_sentences) {
 #define COUNT(name, value, sentence) +1
   ck_assert_int_eq(names, 0 ETHD_STATUSES(COUNT));
   ck_assert_str_eq(ethd_status_sentence(ETHD_E_RANGE), "a value is out of its range");
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("param");
-  TCase *all = tcase_create("all");
-  tcase_add_test(all, test_good_table);
-  tcase_add_test(all, test_bad_tables);
-  tcase_add_test(all, test_values);
-  tcase_add_test(all, test_defaults_and_names);
-  tcase_add_test(all, test_words);
-  tcase_add_test(all, test_sentences);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -3,7 +3,6 @@
 #include <check.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "bounds/stability.h"
@@ -77,7 +76,7 @@ static const struct {
   int delay;
 } springs[] = {{1000, 0}, {3000, 0}, {10000, 0}, {1000, 1}, {3000, 1}};
 
-START_TEST(test_oscillation) {
+TEST_LOOP(test_oscillation, 0, sizeof springs / sizeof *springs) {
   double K = springs[_i].K;
   int delay = springs[_i].delay;
   ck_assert(!is_stable(K, 0, delay));
@@ -89,24 +88,21 @@ START_TEST(test_oscillation) {
   ck_assert(with.fault == ETHD_FAULT_NONE && with.seen & ETHD_FAULT_BIT(ETHD_FAULT_ENERGY));
   ck_assert_double_le(with.most_force, 0);
 }
-END_TEST
 
 /* Far over the bound damping doesn't help: the ring is stopped. */
-START_TEST(test_beyond_help) {
+TEST(test_beyond_help) {
   run with = press(60000, 0, 1, BOUND);
   ck_assert(with.fault == ETHD_FAULT_ENERGY);
 }
-END_TEST
 
 /* Walls under the bound are left alone, to the bit. */
-START_TEST(test_passive) {
+TEST(test_passive) {
   const double walls[][2] = {{500, 45}, {1000, 45}, {2500, 45}, {2500, 20}};
   for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) {
     run without = press(walls[i][0], walls[i][1], 0, INFINITY), with = press(walls[i][0], walls[i][1], 0, BOUND);
     ck_assert(with.seen == 0 && with.early == without.early && with.late == without.late);
   }
 }
-END_TEST
 
 /* ---- from within the wall ---- */
 
@@ -142,7 +138,7 @@ static void go_in(rig *r, double energy) {
 }
 
 /* The watch is switched on there; off and on again. */
-START_TEST(test_watched_from_within) {
+TEST_LOOP(test_watched_from_within, 0, 2) {
   rig r;
   go_in(&r, _i ? BOUND : INFINITY);
   for (int swap = 0; swap <= _i; swap++) {
@@ -154,10 +150,9 @@ START_TEST(test_watched_from_within) {
   ck_assert_int_eq(r.trace.fault, 0);
   rig_close(&r);
 }
-END_TEST
 
 /* The contact begins anew in the wall after an acknowledged fault. */
-START_TEST(test_acknowledged_within) {
+TEST(test_acknowledged_within) {
   rig r;
   go_in(&r, BOUND);
   motion m = rig_at(-0.004, 0, 0);
@@ -172,7 +167,6 @@ START_TEST(test_acknowledged_within) {
   ck_assert_int_eq(r.trace.fault, 0);
   rig_close(&r);
 }
-END_TEST
 
 /* A spring that is bounced on, 0.6 mm deep at 0.2 m/s, gives away what the hold adds, at most
    2 x 2500 N/m x 0.6 mm x 0.2 mm = 0.6 mJ each time. */
@@ -195,16 +189,15 @@ static int told_while_bouncing(int bounces, int pause) {
 }
 
 /* One contact goes on with what the last one gave away, unless that is half a second ago. */
-START_TEST(test_bounces_add_up) {
+TEST(test_bounces_add_up) {
   ck_assert_int_eq(told_while_bouncing(1, 0), 0);
   ck_assert_int_gt(told_while_bouncing(12, 10), 0);
   ck_assert_int_eq(told_while_bouncing(12, 600), 0);
 }
-END_TEST
 
 /* What a wall has absorbed is no credit once it doesn't push: a slow way in and a fast one out are told after it,
    too. */
-START_TEST(test_absorbed_is_no_credit) {
+TEST(test_absorbed_is_no_credit) {
   for (int is_before = 0; is_before < 2; is_before++) {
     rig r;
     rig_open(&r, RIG_WALL);
@@ -217,10 +210,9 @@ START_TEST(test_absorbed_is_no_credit) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* A brake takes energy away: it is never told, and no wall is added to it. */
-START_TEST(test_brake_takes) {
+TEST(test_brake_takes) {
   rig r;
   rig_open(&r, RIG_WALL);
   ethd_setup_transition(&r.setup, &ethd_transition_offset);
@@ -235,10 +227,9 @@ START_TEST(test_brake_takes) {
   ck_assert_int_eq(r.trace.state, ETHD_BRAKING);
   rig_close(&r);
 }
-END_TEST
 
 /* A body that was pressed and retreats from a ring that stands, with another law since. */
-START_TEST(test_surface_retreats) {
+TEST(test_surface_retreats) {
   rig r;
   rig_open(&r, NULL);
   ethd_setup_transition(&r.setup, &ethd_transition_smooth);
@@ -266,10 +257,9 @@ START_TEST(test_surface_retreats) {
   ethd_scene_destroy(body);
   rig_close(&r);
 }
-END_TEST
 
 /* A wall that comes to the ring with a new scene has stored nothing: what it gives is told. */
-START_TEST(test_wall_that_comes) {
+TEST(test_wall_that_comes) {
   rig r;
   rig_open(&r, "halfplane -1 0 0.5\n");
   ethd_setup_transition(&r.setup, &ethd_transition_smooth);
@@ -282,22 +272,4 @@ START_TEST(test_wall_that_comes) {
   ck_assert_int_gt(told(&r, -0.0039, 0.004), 0);
   ethd_scene_destroy(wall);
   rig_close(&r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("passivity");
-  TCase *t = tcase_create("passivity");
-  tcase_add_loop_test(t, test_oscillation, 0, sizeof springs / sizeof *springs);
-  tcase_add_test(t, test_beyond_help);
-  tcase_add_test(t, test_passive);
-  tcase_add_loop_test(t, test_watched_from_within, 0, 2);
-  tcase_add_test(t, test_acknowledged_within);
-  tcase_add_test(t, test_bounces_add_up);
-  tcase_add_test(t, test_absorbed_is_no_credit);
-  tcase_add_test(t, test_brake_takes);
-  tcase_add_test(t, test_surface_retreats);
-  tcase_add_test(t, test_wall_that_comes);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

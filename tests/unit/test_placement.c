@@ -1,5 +1,4 @@
 /* Recorded movements as paths: a movement with known speeds, touched down and shifted. */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +6,7 @@
 #include <unistd.h>
 
 #include "tap/placement.h"
+#include "unit/suite.h"
 
 static const ethd_arm arm = {ETHD_ARM_PARALLEL, 0.25, 0.25};
 
@@ -26,7 +26,7 @@ static ethd__movement swing(double rate, double duration) {
 }
 
 /* Differences over +-h see sin(W h)/(W h) of the speed. */
-START_TEST(test_speed) {
+TEST(test_speed) {
   static const double rates[] = {100, 200, 250, 300, 1000, 4000};
   for (size_t r = 0; r < sizeof rates / sizeof *rates; r++) {
     ethd__movement m = swing(rates[r], 0.3);
@@ -38,20 +38,18 @@ START_TEST(test_speed) {
     ethd__movement_free(&m);
   }
 }
-END_TEST
 
 /* Jitter of 20 um at 200 Hz moves a central difference by at most 20e-6 / 5e-3. */
-START_TEST(test_speed_with_noise) {
+TEST(test_speed_with_noise) {
   ethd__movement m = swing(200, 0.3);
   for (size_t k = 0; k < m.count; k++) m.samples[k].x += k % 2 ? 20e-6 : -20e-6;
   for (size_t k = 1; k + 1 < m.count; k++)
     ck_assert_double_eq_tol(ethd__movement_speed(&m, k), A * W * sin(W * m.samples[k].t), 4e-3);
   ethd__movement_free(&m);
 }
-END_TEST
 
 /* Falls to v at t with A w sin(w t) = v, the second time. */
-START_TEST(test_touchdown) {
+TEST(test_touchdown) {
   ethd__movement m = swing(250, 0.39);
   for (double v = 0.1; v < 0.79; v += 0.1) {
     ethd__touchdown d;
@@ -64,9 +62,8 @@ START_TEST(test_touchdown) {
   }
   ethd__movement_free(&m);
 }
-END_TEST
 
-START_TEST(test_never_that_fast) {
+TEST(test_never_that_fast) {
   ethd__movement m = swing(250, 0.39);
   ethd__touchdown d;
   ethd__movement_touchdown(&m, 0.81, &d);
@@ -74,10 +71,9 @@ START_TEST(test_never_that_fast) {
   ck_assert_double_eq_tol(d.t, M_PI / 2 / W, 4e-3);
   ethd__movement_free(&m);
 }
-END_TEST
 
 /* Cut off while still fast: the last sample. */
-START_TEST(test_never_slow_again) {
+TEST(test_never_slow_again) {
   ethd__movement m = swing(250, 0.25);
   ethd__touchdown d;
   ethd__movement_touchdown(&m, 0.4, &d);
@@ -85,10 +81,9 @@ START_TEST(test_never_slow_again) {
   ck_assert_double_eq(d.t, m.samples[m.count - 1].t);
   ethd__movement_free(&m);
 }
-END_TEST
 
 /* The whole movement is there, shifted by one vector, with the touchdown at the centre. */
-START_TEST(test_place) {
+TEST(test_place) {
   ethd__movement m = swing(250, 0.39);
   ethd_path_sample *out = malloc(m.count * sizeof *out);
   const ethd_vec centre = {0.2453, 0.25};
@@ -109,11 +104,10 @@ START_TEST(test_place) {
   free(out);
   ethd__movement_free(&m);
 }
-END_TEST
 
 /* A straight line through the arm's reach, 0.5 m about the base: starts at the first sample within, ends
    at the last. */
-START_TEST(test_reach) {
+TEST(test_reach) {
   enum { N = 301 };
   ethd_path_sample in[N], out[N];
   for (int k = 0; k < N; k++) in[k] = (ethd_path_sample){0.01 * k, 1.5 - 0.01 * k, 0};
@@ -128,7 +122,6 @@ START_TEST(test_reach) {
   ck_assert_double_eq_tol(out[count - 1].x, 1.5 - 0.01 * (double)last, 1e-12);
   ck_assert_uint_eq(ethd__movement_place(&m, &d, (ethd_vec){0.4, 0.31}, &arm, out), 0);
 }
-END_TEST
 
 /* ---- files ---- */
 
@@ -147,7 +140,7 @@ static ethd_status load(const char *text, ethd__movement *out, char *message) {
   return load_form(text, &ethd__movement_si, out, message);
 }
 
-START_TEST(test_file) {
+TEST(test_file) {
   ethd__movement m;
   char message[ETHD_MESSAGE_MAX];
   ck_assert_int_eq(load("y_m,fy_n,t_s,x_m\n1,x,5,0.1\n2,x,5.5,0.2\n3,x,7,-0.4\n", &m, message), ETHD_OK);
@@ -164,9 +157,8 @@ START_TEST(test_file) {
   ck_assert_double_eq_tol(m.samples[2].t, 0.3, 1e-15);
   ethd__movement_free(&m);
 }
-END_TEST
 
-START_TEST(test_bad_files) {
+TEST(test_bad_files) {
   static const struct {
     const char *text, *says;
   } bad[] = {
@@ -192,25 +184,4 @@ START_TEST(test_bad_files) {
     ck_assert(!strchr(message, '\n') && message[0]);
     ck_assert_ptr_null(m.samples);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("placement");
-  TCase *all = tcase_create("all");
-  tcase_add_test(all, test_speed);
-  tcase_add_test(all, test_speed_with_noise);
-  tcase_add_test(all, test_touchdown);
-  tcase_add_test(all, test_never_that_fast);
-  tcase_add_test(all, test_never_slow_again);
-  tcase_add_test(all, test_place);
-  tcase_add_test(all, test_reach);
-  tcase_add_test(all, test_file);
-  tcase_add_test(all, test_bad_files);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -53,7 +53,7 @@ static const refusal refusals[] = {
     {"not_there", ETHD_E_LOAD, NULL, "a file that cannot be loaded as a plugin"},
 };
 
-START_TEST(test_refused) {
+TEST_LOOP(test_refused, 0, sizeof refusals / sizeof *refusals) {
   const refusal *c = &refusals[_i];
   const ethd_plugin_entry *entry = (const ethd_plugin_entry *)c;
   ethd_error error;
@@ -66,9 +66,8 @@ START_TEST(test_refused) {
     ck_assert_int_eq(ethd_plugin_open(path_of(c->plugin), &entry, NULL), c->status);
   }
 }
-END_TEST
 
-START_TEST(test_files_that_are_none) {
+TEST(test_files_that_are_none) {
   const char *const paths[] = {"", "/", "/dev/null", "./Makefile", NULL};
   const ethd_plugin_entry *entry;
   ethd_error error;
@@ -77,10 +76,9 @@ START_TEST(test_files_that_are_none) {
     ck_assert_ptr_null(entry);
   }
 }
-END_TEST
 
 /* An id stands for one law of a kind; laws of different kinds may share it. */
-START_TEST(test_several_laws) {
+TEST(test_several_laws) {
   const ethd_plugin_entry *entry;
   ck_assert_int_eq(ethd_plugin_open(path_of("pair"), &entry, NULL), ETHD_OK);
   ck_assert_uint_eq(entry->law_count, 4);
@@ -90,7 +88,6 @@ START_TEST(test_several_laws) {
   ck_assert(entry->laws[0]->kind == ETHD_CONTACT && entry->laws[1]->kind == ETHD_TRANSITION &&
             entry->laws[3]->kind == ETHD_TRACKING);
 }
-END_TEST
 
 /* ---- stopped ---- */
 
@@ -115,7 +112,7 @@ static ethd_sense sense_at(const rig *r, double d) {
   return rig_sense(&r->setup.arm, &m);
 }
 
-START_TEST(test_stopped) {
+TEST_LOOP(test_stopped, 0, 2) {
   static const struct {
     const char *plugin;
     ethd_status status;
@@ -136,7 +133,6 @@ START_TEST(test_stopped) {
   ck_assert_int_eq(rig_try(&r, &out), ETHD_OK);
   rig_close(&r);
 }
-END_TEST
 
 static int64_t now_ns(void) {
   struct timespec t;
@@ -145,7 +141,7 @@ static int64_t now_ns(void) {
 }
 
 /* The library has no clock: who calls step measures it and says so at the next one. */
-START_TEST(test_over_its_time_budget) {
+TEST(test_over_its_time_budget) {
   rig r;
   open_broken(&r, "slow");
   ethd_sense out = sense_at(&r, 0.001), in = sense_at(&r, -0.001);
@@ -158,7 +154,6 @@ START_TEST(test_over_its_time_budget) {
   expect_stopped(&r, ETHD_E_BUDGET, ETHD_FAULT_BUDGET, "a step ran over its time budget");
   rig_close(&r);
 }
-END_TEST
 
 /* ---- the law to copy ---- */
 
@@ -178,7 +173,7 @@ static double standstill(rig *r) {
   return d;
 }
 
-START_TEST(test_my_law) {
+TEST(test_my_law) {
   const ethd_law *law = open_law("mylaw");
   ck_assert_str_eq(law->id, "brake-ahead");
   rig r;
@@ -194,10 +189,9 @@ START_TEST(test_my_law) {
   ck_assert_double_gt(ahead, -0.0004);  /* a tick's way is 0.4 mm */
   ck_assert_double_lt(ahead, 0.0004);
 }
-END_TEST
 
 /* Posted, checked, swapped like a law of the library. */
-START_TEST(test_my_law_is_nothing_special) {
+TEST(test_my_law_is_nothing_special) {
   rig r;
   ethd_error error;
   rig_open(&r, RIG_WALL);
@@ -219,12 +213,11 @@ START_TEST(test_my_law_is_nothing_special) {
   ck_assert_int_eq(r.trace.state, ETHD_BRAKING);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- the law that counts ---- */
 
 /* Once a tick, twice at a swap; and its torque is pd's to the last bit. */
-START_TEST(test_counting) {
+TEST(test_counting) {
   const ethd_law *law = open_law("counting");
   void *handle = dlopen(path_of("counting"), RTLD_NOW | RTLD_NOLOAD);
   ck_assert_ptr_nonnull(handle);
@@ -249,20 +242,4 @@ START_TEST(test_counting) {
   dlclose(handle);
   rig_close(&r);
   rig_close(&plain);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("plugin");
-  TCase *t = tcase_create("plugin");
-  tcase_add_loop_test(t, test_refused, 0, sizeof refusals / sizeof *refusals);
-  tcase_add_test(t, test_files_that_are_none);
-  tcase_add_test(t, test_several_laws);
-  tcase_add_loop_test(t, test_stopped, 0, 2);
-  tcase_add_test(t, test_over_its_time_budget);
-  tcase_add_test(t, test_my_law);
-  tcase_add_test(t, test_my_law_is_nothing_special);
-  tcase_add_test(t, test_counting);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -19,7 +19,7 @@ static void run(rig *r, int from, int to) {
 
 /* ---- posting ---- */
 
-START_TEST(test_taken_at_the_next_step) {
+TEST(test_taken_at_the_next_step) {
   rig r;
   rig_open(&r, RIG_WALL);
   rig_start(&r);
@@ -38,10 +38,9 @@ START_TEST(test_taken_at_the_next_step) {
   rig_post(&r);
   rig_close(&r);
 }
-END_TEST
 
 /* Half a setup can't be: what comes in between is refused and leaves everything as it was. */
-START_TEST(test_refusal_changes_nothing) {
+TEST(test_refusal_changes_nothing) {
   rig r, untouched;
   ethd_error error;
   rig_open(&r, RIG_WALL);
@@ -67,9 +66,8 @@ START_TEST(test_refusal_changes_nothing) {
   rig_close(&r);
   rig_close(&untouched);
 }
-END_TEST
 
-START_TEST(test_period_cannot_change) {
+TEST(test_period_cannot_change) {
   rig r;
   ethd_error error;
   rig_open(&r, NULL);
@@ -80,10 +78,9 @@ START_TEST(test_period_cannot_change) {
   ck_assert(error.found == 0.002 && error.min == 0.001);
   rig_close(&r);
 }
-END_TEST
 
 /* A replaced scene comes back once, when it is no longer used. */
-START_TEST(test_scene_comes_back) {
+TEST(test_scene_comes_back) {
   rig r;
   rig_open(&r, RIG_WALL);
   rig_start(&r);
@@ -108,11 +105,10 @@ START_TEST(test_scene_comes_back) {
   ck_assert_ptr_eq(rig_poll(&r).scene, NULL);
   rig_close(&r);
 }
-END_TEST
 
 /* A wall that stands where one stood goes on under the ring, whatever scene it is of; one that stands elsewhere is a
    new contact: braking again. */
-START_TEST(test_new_wall_restarts_contacts) {
+TEST(test_new_wall_restarts_contacts) {
   rig r;
   rig_open(&r, RIG_WALL);
   rig_start(&r);
@@ -134,12 +130,11 @@ START_TEST(test_new_wall_restarts_contacts) {
   ethd_scene_destroy(old);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- the event ring ---- */
 
 /* Full: faults are dropped and counted, but a post waits for room for all its scenes, so that none is lost. */
-START_TEST(test_full_ring) {
+TEST(test_full_ring) {
   rig r;
   ethd_counters c;
   rig_open(&r, RIG_WALL);
@@ -169,9 +164,8 @@ START_TEST(test_full_ring) {
   ethd_scene_destroy(old);
   rig_close(&r);
 }
-END_TEST
 
-START_TEST(test_ring_goes_round) {
+TEST(test_ring_goes_round) {
   rig r;
   rig_open(&r, NULL);
   rig_start(&r);
@@ -184,11 +178,10 @@ START_TEST(test_ring_goes_round) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* ---- forgetting and rehearsing ---- */
 
-START_TEST(test_reset) {
+TEST(test_reset) {
   rig r, fresh;
   rig_open(&r, RIG_WALL);
   rig_open(&fresh, RIG_WALL);
@@ -211,10 +204,9 @@ START_TEST(test_reset) {
   rig_close(&r);
   rig_close(&fresh);
 }
-END_TEST
 
 /* It tells what the step would give, and nothing is different after it. */
-START_TEST(test_rehearse) {
+TEST(test_rehearse) {
   rig r, plain;
   rig_open(&r, RIG_WALL);
   rig_open(&plain, RIG_WALL);
@@ -240,9 +232,8 @@ START_TEST(test_rehearse) {
   rig_close(&r);
   rig_close(&plain);
 }
-END_TEST
 
-START_TEST(test_without_trace) {
+TEST(test_without_trace) {
   rig r, plain;
   rig_open(&r, RIG_WALL);
   rig_open(&plain, RIG_WALL);
@@ -258,9 +249,8 @@ START_TEST(test_without_trace) {
   rig_close(&r);
   rig_close(&plain);
 }
-END_TEST
 
-START_TEST(test_counters) {
+TEST(test_counters) {
   rig r;
   ethd_counters c;
   rig_open(&r, RIG_WALL);
@@ -280,7 +270,6 @@ START_TEST(test_counters) {
   ck_assert(c.guard[1] == 15 && c.guard[0] == 0 && c.faults[ETHD_FAULT_INPUT] == 0);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- what a setup may be ---- */
 
@@ -324,7 +313,7 @@ static const refusal refusals[] = {
     {AT(limits.workspace[3]), NAN, "limits.workspace", ETHD_E_NOT_FINITE},
 };
 
-START_TEST(test_refusals) {
+TEST_LOOP(test_refusals, 0, sizeof refusals / sizeof *refusals) {
   const refusal *c = &refusals[_i];
   ethd_setup s = ethd_setup_default();
   ethd_control *control = (ethd_control *)&s;
@@ -344,10 +333,9 @@ START_TEST(test_refusals) {
   memcpy((char *)&s + c->at, &error.max, sizeof error.max);
   ck_assert_int_eq(ethd_setup_check(&s, NULL), ETHD_OK);
 }
-END_TEST
 
 /* eps_max and t_max may be infinite, as in the paper; limits may be infinite or narrow. */
-START_TEST(test_infinities_that_are_fine) {
+TEST(test_infinities_that_are_fine) {
   ethd_setup s = ethd_setup_default();
   s.transition_p[3] = s.transition_p[4] = INFINITY;
   s.limits.torque = s.limits.torque_rate = 0;
@@ -356,9 +344,8 @@ START_TEST(test_infinities_that_are_fine) {
   s.limits.workspace[1] = 0.2;
   ck_assert_int_eq(ethd_setup_check(&s, NULL), ETHD_E_RANGE);
 }
-END_TEST
 
-START_TEST(test_laws_must_be_there) {
+TEST(test_laws_must_be_there) {
   ethd_error error;
   ethd_setup s = ethd_setup_default();
   s.tracking = NULL;
@@ -369,26 +356,4 @@ START_TEST(test_laws_must_be_there) {
   ck_assert_int_eq(ethd_setup_check(&s, &error), ETHD_E_ARGUMENT);
   ck_assert_str_eq(error.name, "contact");
   ck_assert_int_eq(ethd_setup_check(NULL, NULL), ETHD_E_ARGUMENT);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("post");
-  TCase *t = tcase_create("post");
-  tcase_add_test(t, test_taken_at_the_next_step);
-  tcase_add_test(t, test_refusal_changes_nothing);
-  tcase_add_test(t, test_period_cannot_change);
-  tcase_add_test(t, test_scene_comes_back);
-  tcase_add_test(t, test_new_wall_restarts_contacts);
-  tcase_add_test(t, test_full_ring);
-  tcase_add_test(t, test_ring_goes_round);
-  tcase_add_test(t, test_reset);
-  tcase_add_test(t, test_rehearse);
-  tcase_add_test(t, test_without_trace);
-  tcase_add_test(t, test_counters);
-  tcase_add_loop_test(t, test_refusals, 0, sizeof refusals / sizeof *refusals);
-  tcase_add_test(t, test_infinities_that_are_fine);
-  tcase_add_test(t, test_laws_must_be_there);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

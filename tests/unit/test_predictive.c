@@ -81,7 +81,7 @@ static ride ride_at(double speed, double mass, double force) {
 
 /* Braking begins v^2/(2a) + d_l/2 before the place aimed at, a = effort F/m and d_l = a/rate^2, within a tick's way;
    and the ring stands at that place. */
-START_TEST(test_curve) {
+TEST_LOOP(test_curve, 0, 4) {
   const double speeds[] = {0.1, 0.2, 0.4, 0.6};
   double v = speeds[_i], mass = 0.12, force = 5, a = p[param("effort")] * force / mass, rate = p[param("rate")];
   ride x = ride_at(v, mass, force);
@@ -96,10 +96,9 @@ START_TEST(test_curve) {
                 closed);
   ck_assert_double_eq_tol(x.d, -p[param("aim")], 3e-5);
 }
-END_TEST
 
 /* v* = sqrt(2 a g): below it the ring stands before the finger is at the rim, above it it doesn't. */
-START_TEST(test_limit_speed) {
+TEST(test_limit_speed) {
   double mass = 0.12, force = 5, a = p[param("effort")] * force / mass, lag = 0.001, gap = 0.0045 - lag;
   double limit = sqrt(2 * a * gap);
   for (int above = 0; above < 2; above++) {
@@ -114,10 +113,9 @@ START_TEST(test_limit_speed) {
     ck_assert_msg(above ? rim < 0 : rim > 0, "%g m/s, v* %g: %g m left as the ring stands", v, limit, rim);
   }
 }
-END_TEST
 
 /* The hold: pushed aside by a millimetre the ring comes back to where it was held, while no finger is there. */
-START_TEST(test_hold) {
+TEST(test_hold) {
   ride x = ride_at(0.2, 0.12, 5);
   for (int i = 0; i < 110; i++) tick(&x, i < 60 ? 0.2 : 1e-3, 0.12);
   ck_assert_double_eq_tol(x.d, -p[param("aim")], 3e-5);
@@ -126,10 +124,9 @@ START_TEST(test_hold) {
   for (int i = 0; i < 40; i++) ck_assert_int_eq(tick(&x, 1e-3, 0.12).state, ETHD_BRAKING);
   ck_assert_double_eq_tol(x.d, -p[param("aim")], 1e-4);
 }
-END_TEST
 
 /* A ring 30 % heavier than the facts say: after some brakings k = 1/1.3, and the facts are right after all. */
-START_TEST(test_learning) {
+TEST(test_learning) {
   p[param("learn")] = 0.3;
   double kept[ETHD_MEMORY] = {0};
   for (int tap = 0; tap < 8; tap++) {
@@ -144,10 +141,9 @@ START_TEST(test_learning) {
   for (int i = 0; i < 120; i++) tick(&x, i < 34 ? 0.4 : 1e-3, 0.12);
   for (size_t i = 0; i < ETHD_MEMORY; i++) ck_assert(memory[i] == 0); /* no learning unless it is asked for */
 }
-END_TEST
 
 /* A finger that turns back while the ring still brakes ends the braking; what the ring did until then is learnt. */
-START_TEST(test_learns_though_the_finger_leaves) {
+TEST(test_learns_though_the_finger_leaves) {
   p[param("learn")] = 0.3;
   ride x = ride_at(0.4, 0.12, 5);
   int braked = 0;
@@ -158,10 +154,9 @@ START_TEST(test_learns_though_the_finger_leaves) {
   ck_assert(memory[1] > 0);
   ck_assert_double_eq_tol(memory[0] / memory[1], 1, 0.05);
 }
-END_TEST
 
 /* A ring that is much heavier or lighter than it was taken for isn't learnt from; nor one whose speed isn't halved. */
-START_TEST(test_learns_nothing_from_strangers) {
+TEST_LOOP(test_learns_nothing_from_strangers, 0, 3) {
   p[param("learn")] = 0.3;
   const double masses[] = {9, 0.1};
   p[param("t_max")] = INFINITY;
@@ -173,10 +168,9 @@ START_TEST(test_learns_nothing_from_strangers) {
   }
   ck_assert_msg(memory[0] == 0 && memory[1] == 0, "%g of %g", memory[0], memory[1]);
 }
-END_TEST
 
 /* A ring of a quarter of its mass is learnt to be lighter; from one of a tenth, which would be fourfold, nothing is. */
-START_TEST(test_learns_no_more_than_fourfold) {
+TEST(test_learns_no_more_than_fourfold) {
   double kept[ETHD_MEMORY] = {0};
   int learnt = 0, refused = 0;
   p[param("learn")] = 0.3;
@@ -193,10 +187,9 @@ START_TEST(test_learns_no_more_than_fourfold) {
   }
   ck_assert_msg(learnt > 0 && refused > 0, "%d learnt, %d refused", learnt, refused);
 }
-END_TEST
 
 /* Without facts, with any one of those it needs unknown, or without a finger, it is offset to the bit. */
-START_TEST(test_is_offset_when_blind) {
+TEST_LOOP(test_is_offset_when_blind, 0, 8) {
   ethd_facts facts = facts_of(0.12, 5, 0.4);
   const ethd_facts *given = &facts;
   if (_i == 0) given = NULL;
@@ -217,20 +210,18 @@ START_TEST(test_is_offset_when_blind) {
     ck_assert(memcmp(&r, &o, sizeof r) == 0);
   }
 }
-END_TEST
 
 /* Unknown friction and delay are none, not a reason to be blind. */
-START_TEST(test_unknown_friction) {
+TEST(test_unknown_friction) {
   ride x = ride_at(0.3, 0.12, 5);
   x.facts.friction = x.facts.viscous = x.facts.delay = NAN;
   int braked = 0;
   for (int i = 0; i < 46; i++) braked |= tick(&x, 0.3, 0.12).state == ETHD_BRAKING && x.d > 5e-4;
   ck_assert(braked);
 }
-END_TEST
 
 /* Numbers of any kind: what it rules stays possible, and its force within what the guard lets through. */
-START_TEST(test_any_input) {
+TEST_LOOP(test_any_input, 0, 4) {
   const double odd[] = {0, 1e-9, -1e-9, 1e-4, -1e-4, 3e-3, -3e-3, 0.05, -0.05, 1, -1, 1e3, -1e3};
   enum { ODD = sizeof odd / sizeof *odd };
   double state[ETHD_STATE_MAX / sizeof(double)] = {0};
@@ -249,12 +240,11 @@ START_TEST(test_any_input) {
     if (i % 501 == 0) memset(state, 0, sizeof state);
   }
 }
-END_TEST
 
 /* ---- in the controller ---- */
 
 /* It asks in time: the contact is in the trace from the range on, and for no other law before d_beta. */
-START_TEST(test_range) {
+TEST(test_range) {
   rig r;
   for (int looks = 0; looks < 2; looks++) {
     rig_open(&r, RIG_WALL);
@@ -271,7 +261,6 @@ START_TEST(test_range) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* Facts in closed form: a serial and a parallel arm with the same links feel the same mass along any n. */
 typedef struct spy {
@@ -291,7 +280,7 @@ static const ethd_transition_law spying = {
     .range = far_range,
 };
 
-START_TEST(test_facts) {
+TEST_LOOP(test_facts, 0, 2) {
   double mass[2];
   for (int serial = 0; serial < 2; serial++) {
     rig r;
@@ -318,24 +307,5 @@ START_TEST(test_facts) {
   ck_assert_double_eq_tol(mass[0], expected, 1e-9);
   ck_assert_double_eq_tol(mass[1], expected, 1e-9);
 }
-END_TEST
 
-int main(void) {
-  Suite *suite = suite_create("predictive");
-  TCase *all = tcase_create("all");
-  tcase_add_checked_fixture(all, set_up, NULL);
-  tcase_add_loop_test(all, test_curve, 0, 4);
-  tcase_add_test(all, test_limit_speed);
-  tcase_add_test(all, test_hold);
-  tcase_add_test(all, test_learning);
-  tcase_add_test(all, test_learns_though_the_finger_leaves);
-  tcase_add_loop_test(all, test_is_offset_when_blind, 0, 8);
-  tcase_add_test(all, test_unknown_friction);
-  tcase_add_loop_test(all, test_any_input, 0, 4);
-  tcase_add_test(all, test_range);
-  tcase_add_loop_test(all, test_facts, 0, 2);
-  tcase_add_loop_test(all, test_learns_nothing_from_strangers, 0, 3);
-  tcase_add_test(all, test_learns_no_more_than_fourfold);
-  suite_add_tcase(suite, all);
-  return rig_run(suite);
-}
+FIXTURE(set_up, NULL)

@@ -93,7 +93,7 @@ static void move_bodies(ethd_sense *sense, int count, int tick) {
   }
 }
 
-START_TEST(test_odd) {
+TEST_LOOP(test_odd, 0, sizeof cases / sizeof *cases) {
   const odd_case *c = &cases[_i];
   odd_run r;
   ethd_scene *wall = rig_scene(RIG_WALL), *other = rig_scene("circle 0 0 0.015\n");
@@ -119,10 +119,9 @@ START_TEST(test_odd) {
   ethd_scene_destroy(wall);
   ethd_scene_destroy(other);
 }
-END_TEST
 
 /* Out of the law and back again at every third tick of a tap, so that all of its states are met. */
-START_TEST(test_swap_in_every_state) {
+TEST_LOOP(test_swap_in_every_state, 0, 3) {
   int met[3] = {0, 0, 0};
   for (int at = 90; at < 300; at += 3) {
     odd_run r;
@@ -141,10 +140,9 @@ START_TEST(test_swap_in_every_state) {
   }
   ck_assert_msg(met[0] > 0 && met[1] > 0 && met[2] > 0, "states met: %d %d %d", met[0], met[1], met[2]);
 }
-END_TEST
 
 /* The hand stops short of the wall: the ring doesn't brake for ever, and follows it again. */
-START_TEST(test_finger_never_comes) {
+TEST_LOOP(test_finger_never_comes, 0, 8) {
   odd_run r;
   begin(&r, RIG_WALL, true, 0.2465 + 0.001 * _i);
   start(&r);
@@ -160,10 +158,9 @@ START_TEST(test_finger_never_comes) {
   ck_assert_msg(lag < 0.012 - 0.0073 + 1e-4, "%g m from the finger", lag);
   end(&r);
 }
-END_TEST
 
 /* What is out of a parameter's range is refused, by its name. */
-START_TEST(test_parameters) {
+TEST(test_parameters) {
   const ethd_law *law = &ethd_transition_predictive.law;
   for (uint32_t i = 0; i < law->param_count; i++) {
     const ethd_param *row = &law->params[i];
@@ -179,16 +176,4 @@ START_TEST(test_parameters) {
       ck_assert_msg(strstr(error.name, row->name) != NULL, "%s, not %s", error.name, row->name);
     }
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("predictive_odd");
-  TCase *all = tcase_create("all");
-  tcase_add_loop_test(all, test_odd, 0, sizeof cases / sizeof *cases);
-  tcase_add_loop_test(all, test_swap_in_every_state, 0, 3);
-  tcase_add_loop_test(all, test_finger_never_comes, 0, 8);
-  tcase_add_test(all, test_parameters);
-  suite_add_tcase(suite, all);
-  return rig_run(suite);
 }

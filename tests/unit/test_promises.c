@@ -258,7 +258,7 @@ static void run(uint64_t number, int ticks, judge *sum) {
   ethd_control_destroy(control);
 }
 
-START_TEST(test_promises) {
+TEST(test_promises) {
   const char *asked = getenv("ETHD_PROMISES");
   const uint64_t ticks = asked ? (uint64_t)strtod(asked, NULL) : 3000000;
   judge sum = {0};
@@ -270,14 +270,4 @@ START_TEST(test_promises) {
   ck_assert_uint_gt(sum.swaps, 0);
   ck_assert_uint_gt(sum.cleared, 0);
   for (int i = 0; i < 3; i++) ethd_scene_destroy(scenes[i]);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("promises");
-  TCase *t = tcase_create("promises");
-  tcase_set_timeout(t, 3600);
-  tcase_add_test(t, test_promises);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -7,7 +7,7 @@
 enum { MANY = 40000 };
 
 /* The vectors published with the cipher: zeros, ones, digits of pi. */
-START_TEST(test_known_answers) {
+TEST(test_known_answers) {
   static const struct {
     uint32_t key[2], counter[4], out[4];
   } known[] = {
@@ -26,10 +26,9 @@ START_TEST(test_known_answers) {
     for (int k = 0; k < 4; k++) ck_assert_uint_eq(block[k], known[i].out[k]);
   }
 }
-END_TEST
 
 /* Chi square of 32 equal bins: 31 +- 7.9. */
-START_TEST(test_uniform) {
+TEST(test_uniform) {
   ethd__sim_key key = {1, 2};
   int bins[32] = {0};
   double sum = 0, chi = 0;
@@ -44,10 +43,9 @@ START_TEST(test_uniform) {
   ck_assert_double_eq_tol(sum / MANY, 0.5, 4 * sqrt(1.0 / 12 / MANY));
   ck_assert_double_eq_tol(chi, 31, 4 * 7.9);
 }
-END_TEST
 
 /* Mean, variance, skewness, kurtosis, share within one and two sd; neighbours are independent. */
-START_TEST(test_normal) {
+TEST(test_normal) {
   ethd__sim_key key = {7, 0};
   double m[5] = {0}, last = 0, product = 0;
   int within[3] = {0};
@@ -69,7 +67,6 @@ START_TEST(test_normal) {
   }
   ck_assert_double_eq_tol(product, 0, 4 * unit);
 }
-END_TEST
 
 /* Drawn anew, not moved to the cut: variance 1 - 2 c phi(c)/(2 Phi(c) - 1), nothing piles up at +-c. */
 static void cut_is_right(double cut) {
@@ -90,15 +87,14 @@ static void cut_is_right(double cut) {
   ck_assert_double_eq_tol(edge, at_edge, 0.05 * at_edge + 4 * sqrt(at_edge));
 }
 
-START_TEST(test_cut) {
+TEST(test_cut) {
   cut_is_right(2);
   cut_is_right(2.5);
   cut_is_right(0.5);
 }
-END_TEST
 
 /* Every bit of the key counts, and the same key gives the same number. */
-START_TEST(test_key) {
+TEST(test_key) {
   const ethd__sim_key key = {0x0123456789abcdef, 42};
   double one = ethd__uniform(key, 5, 6);
   ck_assert(one == ethd__uniform(key, 5, 6));
@@ -111,17 +107,4 @@ START_TEST(test_key) {
     ck_assert(one != ethd__uniform(key, 5, 6 ^ (uint32_t)flip));
   }
   ck_assert(ethd__uniform((ethd__sim_key){1, 2}, 0, 0) != ethd__uniform((ethd__sim_key){2, 1}, 0, 0));
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("random");
-  TCase *t = tcase_create("random");
-  tcase_add_test(t, test_known_answers);
-  tcase_add_test(t, test_uniform);
-  tcase_add_test(t, test_normal);
-  tcase_add_test(t, test_cut);
-  tcase_add_test(t, test_key);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

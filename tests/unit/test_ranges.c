@@ -117,7 +117,7 @@ static void same_methods(const ethd_method *methods, int count) {
     for (uint32_t k = 0; k < methods[i].param_count; k++) same(methods[i].id, &methods[i].params[k]);
 }
 
-START_TEST(test_ranges) {
+TEST(test_ranges) {
   const ethd_setup setup = ethd_setup_default();
   ethd_setup_key key;
   at = 0;
@@ -129,13 +129,4 @@ START_TEST(test_ranges) {
   for (uint32_t i = 0; ethd_setup_key_at(&setup, i, &key) == ETHD_OK && at < sizeof rows / sizeof *rows; i++)
     same(key.section, &key.param);
   ck_assert_uint_eq(at, sizeof rows / sizeof *rows);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("ranges");
-  TCase *t = tcase_create("ranges");
-  tcase_add_test(t, test_ranges);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

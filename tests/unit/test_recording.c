@@ -1,5 +1,4 @@
 /* Recordings: a folder that replays bit for bit, and says where it doesn't. */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +11,7 @@
 #include "ethd/record.h"
 #include "record/recording_parts.h"
 #include "text/text.h"
+#include "unit/suite.h"
 
 #define CONFIG                                                                                          \
   "# a wall\n[scene]\nfile = walls.scene ; the left one\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n" \
@@ -138,7 +138,7 @@ static void record(void) {
 
 /* ---- tests ---- */
 
-START_TEST(test_replays_to_the_bit) {
+TEST(test_replays_to_the_bit) {
   char says[256];
   record();
   ck_assert_msg(ethd_recording_verify(recording_folder, true, NULL, message) == ETHD_OK, "%s", message);
@@ -147,7 +147,6 @@ START_TEST(test_replays_to_the_bit) {
   ck_assert_int_eq(ethd_recording_verify(recording_folder, true, &(int){1}, message), ETHD_E_UNFINISHED);
   ck_assert_msg(strstr(message, "rec: stopped: 0 of 700 ticks are equal to the bit") != NULL, "%s", message);
 }
-END_TEST
 
 static char *read_text(const char *name) {
   char path[256], *text;
@@ -157,7 +156,7 @@ static char *read_text(const char *name) {
   return text;
 }
 
-START_TEST(test_files) {
+TEST(test_files) {
   record();
   char *text = read_text("config.ini");
   ck_assert_str_eq(text, "# a wall\n[scene]\nfile = scene.scene\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n"
@@ -173,7 +172,6 @@ START_TEST(test_files) {
                          "620,fault,the ring is too fast\n640,set,limits.speed 5\n640,clear,\n700,end,closed\n");
   free(text);
 }
-END_TEST
 
 /* Row, field and index of a number that was changed. */
 static void flip(size_t row, size_t offset, unsigned char mask) {
@@ -189,7 +187,7 @@ static void flip(size_t row, size_t offset, unsigned char mask) {
   ck_assert(fseek(file, at, SEEK_SET) == 0 && fwrite(&byte, 1, 1, file) == 1 && fclose(file) == 0);
 }
 
-START_TEST(test_says_what_differs) {
+TEST(test_says_what_differs) {
   static const struct {
     size_t row, offset;
     const char *says;
@@ -208,10 +206,9 @@ START_TEST(test_says_what_differs) {
   }
   ck_assert_int_eq(ethd_recording_verify(recording_folder, true, NULL, message), ETHD_OK);
 }
-END_TEST
 
 /* Each event matters: without it, or a row late, the replay differs. */
-START_TEST(test_events_matter) {
+TEST(test_events_matter) {
   static const char *const changes[][2] = {{"100,start,", "101,start,"},
                                            {"200,transition,smooth", "200,fault,smooth"},
                                            {"250,set,contact.k_e 2000", "250,set,contact.k_e 2001"},
@@ -231,10 +228,9 @@ START_TEST(test_events_matter) {
   }
   free(text);
 }
-END_TEST
 
 /* A program that was killed leaves no end; a tick.npy that was cut isn't what the end says. */
-START_TEST(test_the_end_counts) {
+TEST(test_the_end_counts) {
   static const struct {
     const char *end, *says;
     ethd_status status;
@@ -255,10 +251,9 @@ START_TEST(test_the_end_counts) {
   }
   free(text);
 }
-END_TEST
 
 /* A recording may begin with hot motors, of which its rows know nothing. */
-START_TEST(test_heat) {
+TEST(test_heat) {
   program p = {.setup = config->setup};
   const double heat[2] = {0.93, 1.01};
   p.setup.limits.nominal_torque = 0.05;
@@ -275,9 +270,8 @@ START_TEST(test_heat) {
   }
   ethd_control_destroy(p.control);
 }
-END_TEST
 
-START_TEST(test_bad_events) {
+TEST(test_bad_events) {
   static const char *const bads[][2] = {
       {"", "events.csv:1: the first line must be row,kind,detail"},
       {"row,kind\n", "events.csv:1: the first line must be row,kind,detail"},
@@ -300,9 +294,8 @@ START_TEST(test_bad_events) {
     ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s\nsays %s", bads[i][0], message);
   }
 }
-END_TEST
 
-START_TEST(test_missing_files) {
+TEST(test_missing_files) {
   static const char *const names[] = {"config.ini", "tick.npy", "events.csv", "scene.scene"};
   char from[128], to[128];
   ck_assert_int_lt(ethd_recording_verify(recording_folder, true, NULL, message), 0);
@@ -316,9 +309,8 @@ START_TEST(test_missing_files) {
     ck_assert_int_eq(rename(to, from), 0);
   }
 }
-END_TEST
 
-START_TEST(test_no_place) {
+TEST(test_no_place) {
   ethd_recording *recording;
   char path[128];
   snprintf(path, sizeof path, "%s/file", folder);
@@ -328,26 +320,5 @@ START_TEST(test_no_place) {
   ck_assert_int_eq(ethd_recording_create("/nowhere/rec", config, false, &recording, message), ETHD_E_FILE);
   ck_assert_str_eq(message, "/nowhere/rec: No such file or directory");
 }
-END_TEST
 
-int main(void) {
-  Suite *suite = suite_create("recording");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_checked_fixture(all, set_up, tear_down);
-  tcase_add_test(all, test_replays_to_the_bit);
-  tcase_add_test(all, test_files);
-  tcase_add_test(all, test_says_what_differs);
-  tcase_add_test(all, test_events_matter);
-  tcase_add_test(all, test_the_end_counts);
-  tcase_add_test(all, test_heat);
-  tcase_add_test(all, test_bad_events);
-  tcase_add_test(all, test_missing_files);
-  tcase_add_test(all, test_no_place);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
-}
+FIXTURE(set_up, tear_down)

@@ -11,7 +11,7 @@
 
 static char message[ETHD_MESSAGE_MAX];
 
-START_TEST(test_law) {
+TEST(test_law) {
   ethd__calibration c = ethd__calibration_default();
   ethd__sensor *s = &c.sensors[0];
   ck_assert(isnan(ethd__sensor_distance(s, 9000))); /* no dark yet */
@@ -24,9 +24,8 @@ START_TEST(test_law) {
   for (int counts = 2001; counts < 65535; counts++)
     ck_assert(ethd__sensor_distance(s, (uint16_t)(counts + 1)) <= ethd__sensor_distance(s, (uint16_t)counts));
 }
-END_TEST
 
-START_TEST(test_table) {
+TEST(test_table) {
   ethd__calibration c = ethd__calibration_default();
   ethd__sensor *s = &c.sensors[0];
   s->dark = 1000;
@@ -40,7 +39,6 @@ START_TEST(test_table) {
   for (double d = 1e-3; d < 6e-3; d += 0.1e-3)
     ck_assert_double_eq_tol(ethd__sensor_distance(s, (uint16_t)(ethd__sensor_counts(s, d) + 0.5)), d, 1e-6);
 }
-END_TEST
 
 /* ---- fits ---- */
 
@@ -66,7 +64,7 @@ static ethd__calibration fitted(ethd__level level, const ethd__calibration *trut
   return c;
 }
 
-START_TEST(test_fit) {
+TEST(test_fit) {
   static const double most[ETHD__LEVEL_COUNT] = {0.8e-3, 0.6e-3, 0.2e-3, 0.03e-3, 0.1e-3}; /* with noise, m rms */
   double worst[ETHD__LEVEL_COUNT] = {0}, residual[ETHD__LEVEL_COUNT] = {0};
   for (uint64_t seed = 1; seed <= 10; seed++)
@@ -81,10 +79,9 @@ START_TEST(test_fit) {
     ck_assert_double_le(worst[level], most[level]);
   }
 }
-END_TEST
 
 /* Without noise the law comes back as it was. */
-START_TEST(test_exact) {
+TEST(test_exact) {
   ethd__calibration truth = rod_truth(3);
   ethd__place_reading at[ROD_PLACES];
   ethd__calibration c = ethd__calibration_default();
@@ -102,9 +99,8 @@ START_TEST(test_exact) {
     ck_assert_double_eq_tol(c.sensors[k].d0, truth.sensors[k].d0, 1e-8);
   }
 }
-END_TEST
 
-START_TEST(test_too_few) {
+TEST(test_too_few) {
   ethd__calibration truth = rod_truth(1), c = truth;
   ethd__place_reading at[ROD_PLACES];
   for (int i = 0; i < ROD_PLACES; i++) {
@@ -115,11 +111,10 @@ START_TEST(test_too_few) {
   ck_assert_str_eq(message, "sensor 5: 1 usable reading, at least 4 are needed: is it missing, dirty or saturated?");
   ck_assert_int_lt(ethd__calibration_fit(ETHD__LEVEL_COMMON, (ethd__place_readings){at, 0}, &c, message), 0);
 }
-END_TEST
 
 /* ---- files ---- */
 
-START_TEST(test_round_trip) {
+TEST(test_round_trip) {
   char path[] = "/tmp/ethd-ring-XXXXXX";
   close(mkstemp(path));
   for (int level = 0; level < ETHD__LEVEL_COUNT; level++) {
@@ -139,7 +134,6 @@ START_TEST(test_round_trip) {
   }
   unlink(path);
 }
-END_TEST
 
 static const struct {
   const char *text, *says;
@@ -167,7 +161,7 @@ static const struct {
     {"[calibration]\nlevel = table\n[sensor 0]\npoint0 = 2 1e-3\npoint1 = 1 1e-3\n", "x:5: sensor 0.point1: found"},
 };
 
-START_TEST(test_bad_texts) {
+TEST(test_bad_texts) {
   for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
     ethd__calibration c;
     ck_assert_msg(ethd__calibration_parse(bads[i].text, strlen(bads[i].text), "x", &c, message) < 0, "%s",
@@ -175,9 +169,8 @@ START_TEST(test_bad_texts) {
     ck_assert_msg(!strncmp(message, bads[i].says, strlen(bads[i].says)), "%s\nsays %s", bads[i].text, message);
   }
 }
-END_TEST
 
-START_TEST(test_mutations) {
+TEST(test_mutations) {
   static const char *const words[] = {"[sensor 3]\n", "[law]\n", "point0 = 1 1\n", "a = 1\n",
                                       "nan",          "-",       "level = gain\n", NULL};
   static const char seed[] =
@@ -192,21 +185,4 @@ START_TEST(test_mutations) {
     message[0] = 0;
     if (ethd__calibration_parse(text, n, "x", &c, message) < 0) ck_assert(message[0] && !strchr(message, '\n'));
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("ring calibration");
-  TCase *tc = tcase_create("calibration");
-  tcase_set_timeout(tc, 3600);
-  tcase_add_test(tc, test_law);
-  tcase_add_test(tc, test_table);
-  tcase_add_test(tc, test_fit);
-  tcase_add_test(tc, test_exact);
-  tcase_add_test(tc, test_too_few);
-  tcase_add_test(tc, test_round_trip);
-  tcase_add_test(tc, test_bad_texts);
-  tcase_add_test(tc, test_mutations);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }

@@ -52,7 +52,7 @@ static double run(ethd__board_clock *c, const board *b, uint32_t from, uint32_t 
 
 enum { SECOND = ETHD__FRAME_RATE };
 
-START_TEST(test_steady) {
+TEST(test_steady) {
   static const struct {
     double drift, jitter, hold, first_second, later; /* the largest error then, s */
   } rows[] = {
@@ -83,20 +83,18 @@ START_TEST(test_steady) {
       ck_assert_uint_eq(c.jumps + c.doubts, 0);
     }
 }
-END_TEST
 
 /* Eighty minutes, the board's clock wraps: the error doesn't grow. */
-START_TEST(test_long) {
+TEST(test_long) {
   board b = {.drift = 80e-6, .jitter = 200e-6, .start_ns = INT64_C(1) << 50, .first_us = 1};
   ethd__board_clock c = {.delay = DELAY};
   run(&c, &b, 0, 10 * SECOND);
   ck_assert_double_le(run(&c, &b, 10 * SECOND, 80 * 60 * SECOND), 100e-6);
   ck_assert_uint_eq(c.jumps + c.doubts, 0);
 }
-END_TEST
 
 /* Every 5 s the host sleeps for 0.3 s and finds all frames at once. */
-START_TEST(test_bursts) {
+TEST(test_bursts) {
   board b = {.drift = 50e-6, .jitter = 200e-6, .start_ns = 1000};
   ethd__board_clock c = {.delay = DELAY};
   double worst = 0;
@@ -110,19 +108,17 @@ START_TEST(test_bursts) {
   printf("stalls of 300 ms: largest error %.1f us\n", 1e6 * worst);
   ck_assert_double_le(worst, 60e-6);
 }
-END_TEST
 
-START_TEST(test_lost_frames) {
+TEST(test_lost_frames) {
   board b = {.drift = 50e-6, .jitter = 200e-6};
   ethd__board_clock c = {.delay = DELAY};
   run(&c, &b, 0, 9 * SECOND);
   for (uint32_t i = 9 * SECOND, n = 0; n < 3000; n++, i += 1 + (n % 100 == 0 ? 5 * SECOND : n % 7))
     ck_assert_double_le(run(&c, &b, i, i + 1), 60e-6);
 }
-END_TEST
 
 /* Board 0 loses 1 to 9 periods: time goes on, the sequence doesn't. Told by the flag, or with that frame lost. */
-START_TEST(test_late) {
+TEST(test_late) {
   for (uint32_t lost = 0; lost < 2; lost++) {
     board b = {.drift = 50e-6};
     ethd__board_clock c = {.delay = DELAY};
@@ -141,11 +137,10 @@ START_TEST(test_late) {
     }
   }
 }
-END_TEST
 
 /* A reset is seen in its first frame; if that is lost, in the next and believed in the one after. The board's
    own drift is known by then: the time is right at once. */
-START_TEST(test_reset) {
+TEST(test_reset) {
   for (uint32_t lost = 0; lost < 4; lost++)
     for (uint32_t when = 9 * SECOND; when < 9 * SECOND + 50; when++) {
       board b = {.drift = 50e-6, .jitter = 100e-6, .start_ns = 5}, after = b;
@@ -164,11 +159,10 @@ START_TEST(test_reset) {
       ck_assert_double_le(run(&c, &after, SECOND, 2 * SECOND), 50e-6);
     }
 }
-END_TEST
 
 /* A time or sequence that has passed the CRC and is wrong: that frame isn't used, the next one is, and the
    alignment is what it was. */
-START_TEST(test_corrupt_times) {
+TEST(test_corrupt_times) {
   for (uint32_t kind = 0; kind < 200; kind++) {
     board b = {.drift = 50e-6, .jitter = 100e-6};
     ethd__board_clock c = {.delay = DELAY};
@@ -187,10 +181,9 @@ START_TEST(test_corrupt_times) {
     ck_assert(c.jumps == 0 && c.doubts == 1);
   }
 }
-END_TEST
 
 /* Time and sequence jump together, as after many lost frames, but no such time has passed. */
-START_TEST(test_jump_ahead) {
+TEST(test_jump_ahead) {
   board b = {.drift = 50e-6, .jitter = 100e-6}, ahead = b;
   ethd__board_clock c = {.delay = DELAY};
   int64_t t_ns;
@@ -202,31 +195,12 @@ START_TEST(test_jump_ahead) {
   ck_assert_int_eq(ethd__board_clock_step(&c, &f, arrival(&ahead, 11 * SECOND + 1), &t_ns), ETHD__CLOCK_JUMPED);
   ck_assert_double_le(fabs(error_of(&ahead, 11 * SECOND + 1, t_ns)), 1e-3);
 }
-END_TEST
 
-START_TEST(test_restart) {
+TEST(test_restart) {
   board b = {.drift = 50e-6, .jitter = 0, .start_ns = 7};
   ethd__board_clock c = {.delay = DELAY};
   run(&c, &b, 0, 9 * SECOND);
   ethd__board_clock_restart(&c);
   ck_assert_double_le(run(&c, &b, 300 * SECOND, 301 * SECOND), 2e-6);
   ck_assert_uint_eq(c.jumps + c.doubts, 0);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("ring clock");
-  TCase *tc = tcase_create("clock");
-  tcase_set_timeout(tc, 120);
-  tcase_add_test(tc, test_steady);
-  tcase_add_test(tc, test_long);
-  tcase_add_test(tc, test_bursts);
-  tcase_add_test(tc, test_lost_frames);
-  tcase_add_test(tc, test_late);
-  tcase_add_test(tc, test_reset);
-  tcase_add_test(tc, test_corrupt_times);
-  tcase_add_test(tc, test_jump_ahead);
-  tcase_add_test(tc, test_restart);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }

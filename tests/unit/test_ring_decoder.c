@@ -1,5 +1,4 @@
 /* Frames of the proximity ring out of a stream of bytes. */
-#include <stdlib.h>
 
 #include "unit/rig.h"
 #include "unit/ring_frames.h"
@@ -24,7 +23,7 @@ static uint32_t decode(ethd__decoder *d, const uint8_t *bytes, size_t size, size
   return frames;
 }
 
-START_TEST(test_crc) {
+TEST(test_crc) {
   ck_assert_uint_eq(ethd__frame_crc((const uint8_t *)"123456789", 9), ETHD__FRAME_CRC_CHECK);
   uint32_t bitwise = ETHD__FRAME_CRC_START;
   uint8_t bytes[256];
@@ -34,9 +33,8 @@ START_TEST(test_crc) {
     ck_assert_uint_eq(ethd__frame_crc(bytes, i + 1), bitwise);
   }
 }
-END_TEST
 
-START_TEST(test_pieces) {
+TEST(test_pieces) {
   ring_wire(0, COUNT, wire);
   for (size_t i = 0; i < sizeof wire; i++) ck_assert((wire[i] == 0) == (i % ETHD__FRAME_WIRE == ETHD__FRAME_WIRE - 1));
   for (size_t piece = 1; piece <= sizeof wire; piece += piece < 100 ? 1 : 97) {
@@ -45,10 +43,9 @@ START_TEST(test_pieces) {
     ck_assert(d.counters.frames == COUNT && !d.counters.corrupt && !d.counters.lost && !d.counters.repeated);
   }
 }
-END_TEST
 
 /* Frames that are all zeros or hold none, and every number of zeros between. */
-START_TEST(test_zeros) {
+TEST(test_zeros) {
   for (uint32_t mask = 0; mask < 65536; mask += 13) {
     ethd__ring_frame frame = {.type = ETHD__FRAME_TYPE, .seq = (uint16_t)mask}, got;
     for (int k = 0; k < ETHD__FRAME_SENSORS; k++) frame.counts[k] = mask >> k & 1 ? 0xa5a5 : 0;
@@ -59,10 +56,9 @@ START_TEST(test_zeros) {
     ck_assert(ethd__decoder_next(&d, &at, wire + ETHD__FRAME_WIRE, &got) && ring_same(&got, &frame));
   }
 }
-END_TEST
 
 /* Wherever one starts to listen, the next whole frame is understood, and nothing is called corrupt. */
-START_TEST(test_any_start) {
+TEST(test_any_start) {
   ring_wire(0, COUNT, wire);
   for (size_t start = 0; start <= ETHD__FRAME_WIRE; start++)
     for (size_t piece = 1; piece < 60; piece += 7) {
@@ -72,10 +68,9 @@ START_TEST(test_any_start) {
       ck_assert(!d.counters.corrupt && !d.counters.lost);
     }
 }
-END_TEST
 
 /* Any byte changed, lost or doubled costs that frame (and the next, if it was the zero between). */
-START_TEST(test_one_byte) {
+TEST(test_one_byte) {
   static uint8_t noisy[sizeof wire + 1];
   for (size_t hit = 0; hit < 3 * ETHD__FRAME_WIRE; hit++)
     for (int kind = 0; kind < 258; kind++) {
@@ -93,9 +88,8 @@ START_TEST(test_one_byte) {
       ck_assert(harmed ? d.counters.corrupt >= 1 && d.counters.corrupt <= 2 : d.counters.corrupt == 0);
     }
 }
-END_TEST
 
-START_TEST(test_flood) {
+TEST(test_flood) {
   static uint8_t flood[1 << 20];
   for (uint32_t value = 1; value < 256; value += 127) {
     ethd__decoder d = {0};
@@ -106,7 +100,6 @@ START_TEST(test_flood) {
     ck_assert_uint_eq(decode(&d, wire, (size_t)4 * ETHD__FRAME_WIRE, 11), 3);
   }
 }
-END_TEST
 
 static ethd__ring_frame through(ethd__decoder *d, uint16_t seq, uint8_t flags) {
   ethd__ring_frame frame = ring_frame(seq), got = {0};
@@ -117,7 +110,7 @@ static ethd__ring_frame through(ethd__decoder *d, uint16_t seq, uint8_t flags) {
   return got;
 }
 
-START_TEST(test_sequence) {
+TEST(test_sequence) {
   ethd__decoder d = {0};
   ck_assert_uint_eq(through(&d, 65533, 0).lost, 0); /* the first one: nothing to compare it with */
   ck_assert_uint_eq(through(&d, 65534, 0).lost, 0);
@@ -130,10 +123,9 @@ START_TEST(test_sequence) {
   ck_assert_uint_eq(through(&d, 900, 0).lost, 0);
   ck_assert(d.counters.lost == 6 && d.counters.frames == 7 && d.counters.corrupt == 0);
 }
-END_TEST
 
 /* A frame of another type is none of ours, be its CRC right. */
-START_TEST(test_type) {
+TEST(test_type) {
   ethd__ring_frame frame = ring_frame(1), got;
   ethd__decoder d = {.in_step = true};
   frame.type = 2;
@@ -141,21 +133,4 @@ START_TEST(test_type) {
   const uint8_t *at = wire;
   ck_assert(!ethd__decoder_next(&d, &at, wire + ETHD__FRAME_WIRE, &got));
   ck_assert_uint_eq(d.counters.corrupt, 1);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("ring decoder");
-  TCase *tc = tcase_create("decoder");
-  tcase_set_timeout(tc, 60);
-  tcase_add_test(tc, test_crc);
-  tcase_add_test(tc, test_pieces);
-  tcase_add_test(tc, test_zeros);
-  tcase_add_test(tc, test_any_start);
-  tcase_add_test(tc, test_one_byte);
-  tcase_add_test(tc, test_flood);
-  tcase_add_test(tc, test_sequence);
-  tcase_add_test(tc, test_type);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }

@@ -148,7 +148,7 @@ static void *open_ring(board *b) {
   return device;
 }
 
-START_TEST(test_refused) {
+TEST(test_refused) {
   static const struct {
     const char *key, *value, *says;
   } rows[] = {
@@ -172,9 +172,8 @@ START_TEST(test_refused) {
   ck_assert_str_eq(message, "x.ini: device.port is missing: the ring's serial port, as /dev/ttyUSB0");
   unplug(&b);
 }
-END_TEST
 
-START_TEST(test_refused_by_what_comes) {
+TEST(test_refused_by_what_comes) {
   static const ethd_setting settings[] = {{"port", "port", 1}, {"patience", "0.3", 2}};
   static const ethd_setting patient[] = {{"port", "port", 1}, {"patience", "30", 2}};
   static ethd_setup setup;
@@ -192,7 +191,6 @@ START_TEST(test_refused_by_what_comes) {
   ck_assert_ptr_nonnull(strstr(message, "port: No such file or directory"));
   unplug(&b);
 }
-END_TEST
 
 /* ---- ticks ---- */
 
@@ -239,7 +237,7 @@ static void end(run *r) {
   unplug(&r->board);
 }
 
-START_TEST(test_readings) {
+TEST(test_readings) {
   run r;
   begin(&r);
   for (uint32_t i = 0; i < 2000; i++) {
@@ -265,10 +263,9 @@ START_TEST(test_readings) {
   ck_assert_ptr_null(driver->remark(r.device, 1));
   end(&r);
 }
-END_TEST
 
 /* A tick that is late may meet a reading that was taken after its own instant; the reading waits for the next one. */
-START_TEST(test_younger_than_the_tick) {
+TEST(test_younger_than_the_tick) {
   run r;
   begin(&r);
   while (r.rays < 20) tick(&r, NULL);
@@ -286,7 +283,6 @@ START_TEST(test_younger_than_the_tick) {
   }
   end(&r);
 }
-END_TEST
 
 /* ---- rows of the fault table: bound, in ticks, at 20 phases ---- */
 
@@ -373,7 +369,7 @@ static const struct {
     {"the board's clock jumped", jump_clock, ETHD_FAULT_BOARD_CLOCK, false, 0},
 };
 
-START_TEST(test_rows) {
+TEST_LOOP(test_rows, 0, (int)(sizeof rows / sizeof *rows)) {
   int worst = -1;
   for (uint32_t phase = 0; phase < 20; phase++) {
     onset = 60 + 7 * phase;
@@ -384,7 +380,6 @@ START_TEST(test_rows) {
   printf("%-26s row %d%s seen at most %d ticks after it\n", rows[_i].what, (int)rows[_i].row,
          rows[_i].grave ? ", grave," : "", worst);
 }
-END_TEST
 
 /* All sensors count 2000 more after a while: a row, and a sentence. */
 static bool all_brighter(ethd__ring_frame *f, uint32_t i) {
@@ -393,7 +388,7 @@ static bool all_brighter(ethd__ring_frame *f, uint32_t i) {
   return true;
 }
 
-START_TEST(test_drift) {
+TEST(test_drift) {
   run r;
   const char *said = NULL;
   onset = 60;
@@ -406,13 +401,12 @@ START_TEST(test_drift) {
   ck_assert_msg(said && strstr(said, "mm too large"), "%s", said ? said : "no remark");
   end(&r);
 }
-END_TEST
 
 /* ---- a line to which nobody listened ---- */
 
 /* Frames wait while the device is open and not started, and while a program is halted. None of them is a reading, since
    nobody knows when it came. The first one that comes afterwards is one, with its instant. */
-START_TEST(test_waiting_frames) {
+TEST(test_waiting_frames) {
   run r;
   begin(&r);
   for (int pause = 0; pause < 2; pause++) {
@@ -434,11 +428,10 @@ START_TEST(test_waiting_frames) {
   }
   end(&r);
 }
-END_TEST
 
 /* ---- unplugged ---- */
 
-START_TEST(test_replug) {
+TEST(test_replug) {
   const char *wanted = getenv("ETHD_REPLUGS");
   int replugs = wanted ? atoi(wanted) : 5;
   uint64_t lost = 0;
@@ -466,21 +459,5 @@ START_TEST(test_replug) {
          (unsigned long long)r.rays);
   end(&r);
 }
-END_TEST
 
-int main(void) {
-  Suite *suite = suite_create("ring driver");
-  TCase *tc = tcase_create("driver");
-  tcase_set_timeout(tc, 250);
-  tcase_add_checked_fixture(tc, set_up, tear_down);
-  tcase_add_test(tc, test_refused);
-  tcase_add_test(tc, test_refused_by_what_comes);
-  tcase_add_test(tc, test_readings);
-  tcase_add_test(tc, test_younger_than_the_tick);
-  tcase_add_loop_test(tc, test_rows, 0, (int)(sizeof rows / sizeof *rows));
-  tcase_add_test(tc, test_drift);
-  tcase_add_test(tc, test_waiting_frames);
-  tcase_add_test(tc, test_replug);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
-}
+FIXTURE(set_up, tear_down)

@@ -130,7 +130,7 @@ static void say(const char *what, const count *c) {
          c->used ? 1e3 * sqrt(c->sum / (double)c->used) : 0, 1e3 * c->worst, c->good_lost);
 }
 
-START_TEST(test_damaged) {
+TEST(test_damaged) {
   uint64_t n = wanted();
   count c = run(n, feed_damaged);
   say("damaged on the wire", &c);
@@ -138,18 +138,16 @@ START_TEST(test_damaged) {
   ck_assert_uint_le(c.used, 10 + n / 100000);
   ck_assert_double_le(c.worst, 1e-3);
 }
-END_TEST
 
-START_TEST(test_forged) {
+TEST(test_forged) {
   count c = run(wanted() / 20 + 1000, feed_forged);
   say("with a right CRC", &c);
   ck_assert_double_le(c.worst, 1.5e-3);
   ck_assert_double_le((double)c.off, 0.01 * (double)c.damaged);
 }
-END_TEST
 
 /* Random bytes, no frame among them but by chance. */
-START_TEST(test_babble) {
+TEST(test_babble) {
   ring_scene s = scene_open(1, &r);
   uint8_t bytes[4096];
   ethd__ring_reading reading;
@@ -166,10 +164,9 @@ START_TEST(test_babble) {
   printf("random bytes: %" PRIu64 ", %" PRIu64 " readings\n", n * sizeof bytes, used);
   ck_assert_uint_le(used, 1 + n / 10000000);
 }
-END_TEST
 
 /* Timed under make stress alone: the figure is for reading, the test asserts none. */
-START_TEST(test_speed) {
+TEST(test_speed) {
   enum { FRAMES = 20000 };
   static uint8_t wire[FRAMES * ETHD__FRAME_WIRE];
   double best = 0;
@@ -189,17 +186,4 @@ START_TEST(test_speed) {
     best = fmax(best, sizeof wire / ((double)(to.tv_sec - from.tv_sec) + 1e-9 * (double)(to.tv_nsec - from.tv_nsec)));
   }
   printf("decoder: %.0f MB/s, %.0f ns a frame (best of 50)\n", 1e-6 * best, 1e9 * ETHD__FRAME_WIRE / best);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("ring noise");
-  TCase *tc = tcase_create("noise");
-  tcase_set_timeout(tc, 7200);
-  tcase_add_test(tc, test_damaged);
-  tcase_add_test(tc, test_forged);
-  tcase_add_test(tc, test_babble);
-  tcase_add_test(tc, test_speed);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }

@@ -1,7 +1,6 @@
 /* From bytes to readings: a moving finger, sensors that fail, frames that can't be true. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "proximity_ring/empty.h"
 #include "unit/rig.h"
@@ -12,7 +11,7 @@ static char message[ETHD_MESSAGE_MAX];
 
 static uint32_t bits(uint32_t mask) { return (uint32_t)__builtin_popcount(mask); }
 
-START_TEST(test_clean) {
+TEST(test_clean) {
   for (uint64_t seed = 1; seed <= 5; seed++) {
     ring_scene s = scene_open(seed, &r);
     double sum = 0;
@@ -32,11 +31,10 @@ START_TEST(test_clean) {
     ck_assert_uint_eq(r.plausible.suspects, 0);
   }
 }
-END_TEST
 
 /* The first frames came 8 ms late: the clock is placed that much earlier by the fourth, more than two frames before the
    third. Instants don't go back, and are the true ones as soon as those have caught up. */
-START_TEST(test_instants_keep_their_order) {
+TEST(test_instants_keep_their_order) {
   ring_scene s = scene_open(1, &r);
   int64_t last = 0;
   for (uint32_t i = 0; i < 12; i++) {
@@ -52,7 +50,6 @@ START_TEST(test_instants_keep_their_order) {
   }
   ck_assert(r.counts.readings == 12 && !r.counts.board_clock);
 }
-END_TEST
 
 /* ---- row 18: sensors ---- */
 
@@ -82,7 +79,7 @@ static void watch(symptom kind, int k, uint32_t onset, uint32_t *noticed, uint32
   }
 }
 
-START_TEST(test_sensor_faults) {
+TEST(test_sensor_faults) {
   static const char *const names[] = {"stuck", "saturated", "missing", "under dark", "off"};
   for (symptom kind = 0; kind < SYMPTOMS; kind++) {
     uint32_t worst = 0, longest = 0;
@@ -101,12 +98,11 @@ START_TEST(test_sensor_faults) {
     ck_assert_uint_le(longest, 8);
   }
 }
-END_TEST
 
 /* A whole board is missing: four of 16, and the flag says so. */
 /* All sensors count more, or less, than when they were calibrated: each ray is on the others' circle, whose radius is wrong.
    A finger of another radius is no drift, nor is a calibration that is a tenth of a millimetre off at each sensor. */
-START_TEST(test_drift) {
+TEST(test_drift) {
   static const double darks[] = {2000, -1200, 0, 100};
   for (uint64_t seed = 1; seed <= 5; seed++)
     for (size_t i = 0; i < sizeof darks / sizeof *darks; i++) {
@@ -129,9 +125,8 @@ START_TEST(test_drift) {
       printf("darks %+g: radius %+.3f mm\n", darks[i], 1e3 * r.drift.offset);
     }
 }
-END_TEST
 
-START_TEST(test_board_missing) {
+TEST(test_board_missing) {
   ring_scene s = scene_open(2, &r);
   ethd__ring_reading reading;
   for (uint32_t i = 0; i < 400; i++) {
@@ -144,10 +139,9 @@ START_TEST(test_board_missing) {
   ck_assert_uint_eq(reading.out, 0x0f00);
   ck_assert_uint_eq(bits(reading.out), 4);
 }
-END_TEST
 
 /* Frozen as a whole is no stuck sensor: nothing moves. */
-START_TEST(test_still) {
+TEST(test_still) {
   ring_scene s = scene_open(2, &r);
   ethd__ring_frame first = scene_frame(&s, 0);
   for (uint32_t i = 0; i < 300; i++) {
@@ -158,11 +152,10 @@ START_TEST(test_still) {
     ck_assert_uint_eq(reading.out, 0);
   }
 }
-END_TEST
 
 /* ---- rows 15 and 20 ---- */
 
-START_TEST(test_lost_and_corrupt) {
+TEST(test_lost_and_corrupt) {
   ring_scene s = scene_open(3, &r);
   ethd__ring_reading reading;
   uint64_t expected = 0;
@@ -179,9 +172,8 @@ START_TEST(test_lost_and_corrupt) {
     ck_assert_uint_eq(r.counts.frame_lost, expected);
   }
 }
-END_TEST
 
-START_TEST(test_reset) {
+TEST(test_reset) {
   ring_scene s = scene_open(3, &r);
   ethd__ring_reading reading;
   for (uint32_t i = 0; i < 900; i++) {
@@ -195,10 +187,9 @@ START_TEST(test_reset) {
   }
   ck_assert_uint_eq(r.counts.frame_lost, 0);
 }
-END_TEST
 
 /* A finger that is suddenly elsewhere is believed in the third frame. */
-START_TEST(test_leap) {
+TEST(test_leap) {
   ring_scene s = scene_open(3, &r);
   ethd__ring_reading reading;
   for (uint32_t i = 0; i < 312; i++) {
@@ -210,7 +201,6 @@ START_TEST(test_leap) {
     ck_assert_int_eq(got, i < 300 || (i - 300) % 3 == 2); /* no finger's shape: a third of the frames */
   }
 }
-END_TEST
 
 /* ---- the empty ring ---- */
 
@@ -227,7 +217,7 @@ static ethd_status check_empty(ring_scene *s, int finger, ethd__calibration *c, 
   return ethd__empty_check(&e, ROD_RING, c, message);
 }
 
-START_TEST(test_empty) {
+TEST(test_empty) {
   ring_scene s = scene_open(4, &r);
   ethd__calibration c = s.truth;
   for (int k = 0; k < ETHD_RAYS; k++) c.sensors[k].dark += 100; /* another day */
@@ -244,23 +234,4 @@ START_TEST(test_empty) {
   ck_assert(isnan(c.sensors[4].dark) && !isnan(c.sensors[3].dark));
   ck_assert_int_eq(check_empty(&s, 0, &c, 0x1f0), ETHD_E_DEVICE);
   ck_assert_str_eq(message, "11 sensors answer in an empty ring, at least 12 are needed: are all boards connected?");
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("ring receiver");
-  TCase *tc = tcase_create("receiver");
-  tcase_set_timeout(tc, 60);
-  tcase_add_test(tc, test_clean);
-  tcase_add_test(tc, test_instants_keep_their_order);
-  tcase_add_test(tc, test_sensor_faults);
-  tcase_add_test(tc, test_drift);
-  tcase_add_test(tc, test_board_missing);
-  tcase_add_test(tc, test_still);
-  tcase_add_test(tc, test_lost_and_corrupt);
-  tcase_add_test(tc, test_reset);
-  tcase_add_test(tc, test_leap);
-  tcase_add_test(tc, test_empty);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }

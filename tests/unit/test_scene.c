@@ -1,11 +1,10 @@
 /* Distances against long double by other formulas (corners, areas, winding angles), within 1 m. */
-#include <check.h>
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene_objects.h"
+#include "unit/suite.h"
 
 enum { QUERIES = 100000 };
 
@@ -38,7 +37,7 @@ static void check_frame(const object *o, ethd_vec x, double distance, ethd_vec p
     ck_assert(scene_expected(o, x.x + 1e-6L * n.x, x.y + 1e-6L * n.y) - scene_expected(o, x.x, x.y) <= -0.999999e-6L);
 }
 
-START_TEST(test_golden_section_agrees) {
+TEST(test_golden_section_agrees) {
   scene_seed(11);
   for (int i = 0; i < 2000; i++) {
     real v[6];
@@ -47,9 +46,8 @@ START_TEST(test_golden_section_agrees) {
     ck_assert(fabsl(fine - by_golden_section(v[0], v[1], v[2], v[3], v[4], v[5])) <= 1e-9L);
   }
 }
-END_TEST
 
-START_TEST(test_each_shape) {
+TEST_LOOP(test_each_shape, 0, ETHD_SHAPE_COUNT) {
   ethd_shape shape = (ethd_shape)_i;
   enum { SCENES = 500 };
   scene_seed(100 + (uint64_t)_i);
@@ -71,9 +69,8 @@ START_TEST(test_each_shape) {
   }
   ck_assert(worst > 0);
 }
-END_TEST
 
-START_TEST(test_mixed) {
+TEST(test_mixed) {
   enum { OBJECTS = 40, SCENES = 50 };
   scene_seed(200);
   int ties = 0;
@@ -106,7 +103,6 @@ START_TEST(test_mixed) {
   }
   ck_assert_int_lt(ties, 100);
 }
-END_TEST
 
 /* ---- special places ---- */
 
@@ -123,7 +119,7 @@ static void check_at(int line, const ethd_scene *scene, double x, double y, doub
 }
 #define CHECK_AT(...) check_at(__LINE__, __VA_ARGS__)
 
-START_TEST(test_paper_wall) {
+TEST(test_paper_wall) {
   ethd_scene *s = SCENE_ONE(ETHD_SHAPE_HALFPLANE, -1, 0, -0.238);
   CHECK_AT(s, 0.25, 0.25, 0.012, -1, 0);
   CHECK_AT(s, 0.2, -3, -0.038, -1, 0);
@@ -131,19 +127,17 @@ START_TEST(test_paper_wall) {
   ck_assert(q.point.x == 0.238 && q.point.y == 0.25);
   ethd_scene_destroy(s);
 }
-END_TEST
 
 /* n = (3, 4) (1 + 5e-7) / 5, c likewise: the plane 3 x + 4 y = 5 * 0.2. */
-START_TEST(test_halfplane_is_normalised) {
+TEST(test_halfplane_is_normalised) {
   double f = 1 + 5e-7;
   ethd_scene *s = SCENE_ONE(ETHD_SHAPE_HALFPLANE, 0.6 * f, 0.8 * f, 0.2 * f);
   CHECK_AT(s, 0, 0, 0.2, 0.6, 0.8);
   CHECK_AT(s, 1, 1, -1.2, 0.6, 0.8);
   ethd_scene_destroy(s);
 }
-END_TEST
 
-START_TEST(test_corners_of_an_l) {
+TEST(test_corners_of_an_l) {
   /*  (0,2)-(1,2)
         |     |
         |   (1,1)-(2,1)       reflex at (1, 1)
@@ -167,11 +161,10 @@ START_TEST(test_corners_of_an_l) {
     ethd_scene_destroy(s);
   }
 }
-END_TEST
 
 /* Which side is inside doesn't depend on which point comes first. From the leftmost one the other neighbour's neighbour
    lies on the wrong side. */
-START_TEST(test_winding) {
+TEST(test_winding) {
   enum { POINTS = 40 };
   double points[POINTS][2] = {{0, 0}, {1, -1}};
   for (int k = 2; k < POINTS; k++) {
@@ -192,9 +185,8 @@ START_TEST(test_winding) {
       ethd_scene_destroy(s);
     }
 }
-END_TEST
 
-START_TEST(test_undefined_gradients) {
+TEST(test_undefined_gradients) {
   ethd_scene *s = SCENE_ONE(ETHD_SHAPE_CIRCLE, 0.25, 0.5, 0.125);
   ethd_nearest q = at(s, 0.25, 0.5);
   ck_assert(q.distance == -0.125 && fabs(ethd_vec_norm(q.n) - 1) <= DBL_EPSILON);
@@ -224,9 +216,8 @@ START_TEST(test_undefined_gradients) {
   CHECK_AT(s, 0, 1.75, -0.25, 0, -1);
   ethd_scene_destroy(s);
 }
-END_TEST
 
-START_TEST(test_empty_and_ties) {
+TEST(test_empty_and_ties) {
   ethd_scene *s = scene_build(NULL, 0);
   ethd_nearest q = at(s, 1, 2);
   ck_assert(q.object == -1 && isinf(q.distance) && q.distance > 0);
@@ -240,10 +231,9 @@ START_TEST(test_empty_and_ties) {
   ethd_scene_destroy(s);
   ethd_scene_destroy(NULL);
 }
-END_TEST
 
 /* Points that rounding puts on either side of a line: signs must not flip where the distance isn't tiny. */
-START_TEST(test_nearly_straight_vertices) {
+TEST(test_nearly_straight_vertices) {
   scene_seed(300);
   for (int c = 0; c < 2000; c++) {
     object o = {ETHD_SHAPE_POLYGON, 0, {0}};
@@ -268,10 +258,9 @@ START_TEST(test_nearly_straight_vertices) {
     ethd_scene_destroy(s);
   }
 }
-END_TEST
 
 /* Beyond the tip of a needle both edges are as near, and one of them shows its inner face. */
-START_TEST(test_needles) {
+TEST(test_needles) {
   static const double widths[] = {1e-3, 1e-6, 1e-9, 1e-12, 1e-14};
   scene_seed(400);
   for (int w = 0; w < 5; w++) {
@@ -285,28 +274,4 @@ START_TEST(test_needles) {
     }
     ethd_scene_destroy(s);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("scene");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_test(all, test_golden_section_agrees);
-  tcase_add_loop_test(all, test_each_shape, 0, ETHD_SHAPE_COUNT);
-  tcase_add_test(all, test_mixed);
-  tcase_add_test(all, test_paper_wall);
-  tcase_add_test(all, test_halfplane_is_normalised);
-  tcase_add_test(all, test_corners_of_an_l);
-  tcase_add_test(all, test_winding);
-  tcase_add_test(all, test_undefined_gradients);
-  tcase_add_test(all, test_empty_and_ties);
-  tcase_add_test(all, test_nearly_straight_vertices);
-  tcase_add_test(all, test_needles);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

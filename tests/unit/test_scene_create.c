@@ -1,10 +1,10 @@
 /* What a scene may be made of, and large ones. */
-#include <check.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "scene_objects.h"
+#include "unit/suite.h"
 
 /* ---- refusals of structs ---- */
 
@@ -62,7 +62,7 @@ static const refusal refusals[] = {
     {ETHD_OK, ETHD_SHAPE_CIRCLE, 3, {1e6, -1e6, 1e6}},
 };
 
-START_TEST(test_refusals) {
+TEST(test_refusals) {
   for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
     const refusal *r = &refusals[i];
     ethd_error error = {.line = -1};
@@ -80,9 +80,8 @@ START_TEST(test_refusals) {
   ck_assert_int_eq(create(ETHD_SHAPE_CIRCLE, 3, circle, 0, &error), ETHD_E_RANGE);
   ck_assert_int_eq(create(ETHD_SHAPE_CIRCLE, 3, circle, -2, &error), ETHD_E_RANGE);
 }
-END_TEST
 
-START_TEST(test_materials_of_structs) {
+TEST(test_materials_of_structs) {
   static ethd_material m[ETHD_MATERIALS_MAX + 1];
   double circle[3] = {0, 0, 1};
   ethd_object_def o = {ETHD_SHAPE_CIRCLE, 1, circle, 3, 0};
@@ -113,7 +112,6 @@ START_TEST(test_materials_of_structs) {
   m[2] = (ethd_material){.name = "C", .count = 1, .values = {{"k", NAN}}};
   ck_assert_int_eq(ethd_scene_create(&def, &scene, &error), ETHD_E_NOT_FINITE);
 }
-END_TEST
 
 static ethd_nearest at(const ethd_scene *scene, double x, double y) {
   ethd_nearest q;
@@ -122,7 +120,7 @@ static ethd_nearest at(const ethd_scene *scene, double x, double y) {
 }
 
 /* Half a million objects and a polygon of 100 000 points, built and asked. */
-START_TEST(test_large) {
+TEST(test_large) {
   enum { OBJECTS = 500000, N = 100000 };
   ethd_object_def *o = calloc(OBJECTS, sizeof *o);
   double *p = malloc((size_t)OBJECTS * 4 * sizeof *p), *q = malloc(2 * N * sizeof *q);
@@ -148,20 +146,4 @@ START_TEST(test_large) {
   free(o);
   free(p);
   free(q);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("scene_create");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_test(all, test_refusals);
-  tcase_add_test(all, test_materials_of_structs);
-  tcase_add_test(all, test_large);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -20,7 +20,7 @@ static ethd_scene *build(const ethd_object_def *objects, size_t count) {
 
 static void close_to(double got, double want) { ck_assert_double_eq_tol(got, want, 1e-12 * fmax(1, fabs(want))); }
 
-START_TEST(test_not_a_number) {
+TEST(test_not_a_number) {
   ethd_scene *scene = rig_scene("circle 0 0 1\nhalfplane 0 1 -5\n");
   const ethd_vec from[] = {{NAN, 0}, {0, NAN}, {INFINITY, 0}, {0, -INFINITY}};
   ethd_touch touch;
@@ -34,13 +34,12 @@ START_TEST(test_not_a_number) {
   ck_assert_uint_eq(ethd_scene_touches(scene, (ethd_vec){0, 0}, 9, &touch, 1), 2);
   ethd_scene_destroy(scene);
 }
-END_TEST
 
 /* Within the size of the scenes. */
 static void about(double got, double want) { ck_assert_double_eq_tol(got, want, 200 + 1e-12 * want); }
 
 /* Far beyond the frame another point stands for x in the trees; the answer is that of the ends seen from afar. */
-START_TEST(test_far_away) {
+TEST(test_far_away) {
   double p[2 * (EDGES + 1)], square[2 * 4 * EDGES];
   chain(p);
   for (int k = 0; k < 4 * EDGES; k++) { /* a square of 10 m, many points a side */
@@ -71,10 +70,9 @@ START_TEST(test_far_away) {
     ethd_scene_destroy(scene);
   }
 }
-END_TEST
 
 /* Where even the square of the distance isn't finite, an object is still the answer. */
-START_TEST(test_squares_that_overflow) {
+TEST(test_squares_that_overflow) {
   double p[2 * (EDGES + 1)];
   chain(p);
   const ethd_object_def line = {ETHD_SHAPE_POLYLINE, -1, p, 2 * (EDGES + 1), 0};
@@ -92,10 +90,9 @@ START_TEST(test_squares_that_overflow) {
   ethd_scene_destroy(scenes[0]);
   ethd_scene_destroy(scenes[1]);
 }
-END_TEST
 
 /* A box of 1e-150 m: beyond its corner by less than a square can show. */
-START_TEST(test_corner_beyond_squares) {
+TEST(test_corner_beyond_squares) {
   ethd_scene *scene = rig_scene("box 0 0 1e-150 1e-150 0\n");
   ethd_nearest n;
   ethd_scene_query(scene, (ethd_vec){2e-150, 2e-150}, &n);
@@ -106,10 +103,9 @@ START_TEST(test_corner_beyond_squares) {
   close_to(n.distance, 5);
   ethd_scene_destroy(scene);
 }
-END_TEST
 
 /* So small a scene that its frame's scale would be more than a double's square. */
-START_TEST(test_tiny_scene) {
+TEST(test_tiny_scene) {
   ethd_scene *scene = rig_scene("circle 0 0 1e-130\n");
   ethd_nearest n;
   ethd_scene_query(scene, (ethd_vec){3, 4}, &n);
@@ -117,10 +113,9 @@ START_TEST(test_tiny_scene) {
   close_to(n.distance, 5);
   ethd_scene_destroy(scene);
 }
-END_TEST
 
 /* On a polyline's vertices: straight on, blunt, sharp, straight back, and the ends. */
-START_TEST(test_on_a_vertex) {
+TEST(test_on_a_vertex) {
   ethd_scene *scene = rig_scene("polyline 0 0 1 0 2 0 3 1 3 3 3 2 0 2 1 2.5\n");
   const ethd_vec at[] = {{0, 0}, {1, 0}, {2, 0}, {3, 1}, {3, 3}, {3, 2}, {0, 2}, {1, 2.5}};
   for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
@@ -134,18 +129,4 @@ START_TEST(test_on_a_vertex) {
     for (size_t k = 0; k < found; k++) ck_assert_double_eq_tol(ethd_vec_norm(touch[k].n), 1, 1e-12);
   }
   ethd_scene_destroy(scene);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("scene far");
-  TCase *t = tcase_create("scene far");
-  tcase_add_test(t, test_not_a_number);
-  tcase_add_test(t, test_far_away);
-  tcase_add_test(t, test_squares_that_overflow);
-  tcase_add_test(t, test_corner_beyond_squares);
-  tcase_add_test(t, test_tiny_scene);
-  tcase_add_test(t, test_on_a_vertex);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

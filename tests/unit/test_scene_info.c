@@ -1,13 +1,13 @@
 /* A scene's summary, and what an arm can't reach. */
-#include <check.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "scene/shapes.h"
 #include "scene_objects.h"
+#include "unit/suite.h"
 
-START_TEST(test_describe) {
+TEST(test_describe) {
   object o[] = {{ETHD_SHAPE_HALFPLANE, 3, {0, 1, 5}},
                 {ETHD_SHAPE_CIRCLE, 3, {1, 2, 0.5}},
                 {ETHD_SHAPE_POLYGON, 8, {0, 0, 3, 0, 3, 1, 0, 1}},
@@ -38,10 +38,9 @@ START_TEST(test_describe) {
     for (int k = 0; k < i; k++) ck_assert_str_ne(ethd_shape_name((ethd_shape)i), ethd_shape_name((ethd_shape)k));
   ck_assert_str_eq(ethd_shape_name(ETHD_SHAPE_HALFPLANE), "halfplane");
 }
-END_TEST
 
 /* A shape's form names its numbers in their order: those that messages name. */
-START_TEST(test_forms) {
+TEST(test_forms) {
   for (int i = 0; i < ETHD_SHAPE_COUNT; i++) {
     const ethd__shape *row = &ethd__shapes[i];
     char form[80], *rest = form;
@@ -60,11 +59,10 @@ START_TEST(test_forms) {
   ck_assert_str_eq(ethd_shape_form(ETHD_SHAPE_BOX), "X Y HALF_W HALF_H ANGLE");
   ck_assert_str_eq(ethd_shape_form(ETHD_SHAPE_COUNT), "");
 }
-END_TEST
 
 /* An arm of 0.3 and 0.2 m: an annulus of 0.1 to 0.5 m, and a ring of 0.05 m. Objects lie within reach iff a
    point of theirs lies 0.05 to 0.55 m from the base: random points of them against the answer. */
-START_TEST(test_out_of_reach) {
+TEST(test_out_of_reach) {
   ethd_arm arm = {ETHD_ARM_SERIAL, 0.3, 0.2};
   int out = 0;
   scene_seed(900);
@@ -103,7 +101,6 @@ START_TEST(test_out_of_reach) {
   ck_assert_uint_eq(ethd_scene_out_of_reach(s, &arm, 0.05), 0);
   ethd_scene_destroy(s);
 }
-END_TEST
 
 static int holds(const ethd_scene_box *b, double x, double y) {
   double u = b->cosine * (x - b->centre.x) + b->sine * (y - b->centre.y);
@@ -112,7 +109,7 @@ static int holds(const ethd_scene_box *b, double x, double y) {
 }
 
 /* Of a chain of 1000 edges: 1000, 125, 16 and 2 boxes, of which each holds the ends of its edges. */
-START_TEST(test_boxes) {
+TEST(test_boxes) {
   enum { EDGES = 1000 };
   static double p[2 * EDGES];
   for (int k = 0; k < EDGES; k++) p[2 * k] = 3 + cos(k * 2 * M_PI / EDGES), p[2 * k + 1] = sin(k * 2 * M_PI / EDGES);
@@ -137,11 +134,10 @@ START_TEST(test_boxes) {
   ck_assert_int_eq(ethd_scene_box_at(s, info.boxes, &b), ETHD_STATUS_EMPTY);
   ethd_scene_destroy(s);
 }
-END_TEST
 
 /* Five chains of different lengths, 10 m apart, and circles between them: each box is that of its own chain, and the
    level that of its own tree. */
-START_TEST(test_boxes_of_several) {
+TEST(test_boxes_of_several) {
   enum { CHAINS = 5, MOST = 700 };
   static double p[CHAINS][2 * MOST], disc[CHAINS][3];
   const size_t points[CHAINS] = {20, 700, 100, 40, 600}, levels[CHAINS] = {2, 4, 3, 2, 4};
@@ -174,22 +170,4 @@ START_TEST(test_boxes_of_several) {
   ck_assert_uint_eq(objects, 2 * CHAINS);
   for (int c = 0; c < CHAINS; c++) ck_assert(lowest[c] == points[c] - 1 && highest[c] == levels[c]);
   ethd_scene_destroy(s);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("scene_info");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_test(all, test_describe);
-  tcase_add_test(all, test_forms);
-  tcase_add_test(all, test_out_of_reach);
-  tcase_add_test(all, test_boxes);
-  tcase_add_test(all, test_boxes_of_several);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -1,6 +1,5 @@
 /* Scenes from text: what is taken, each refusal with its line and word, and text broken at random. ETHD_FUZZ:
    so many of those. */
-#include <check.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -8,6 +7,7 @@
 #include <string.h>
 
 #include "ethd/scene.h"
+#include "unit/suite.h"
 
 static ethd_scene *parse(const char *text) {
   ethd_scene *scene;
@@ -17,7 +17,7 @@ static ethd_scene *parse(const char *text) {
   return scene;
 }
 
-START_TEST(test_every_shape) {
+TEST(test_every_shape) {
   ethd_scene *s = parse("# a scene\n"
                         "halfplane -1 0 -0.238\n"
                         "\tcircle 1 2 3   # a comment\r\n"
@@ -35,9 +35,8 @@ START_TEST(test_every_shape) {
   ck_assert_uint_eq(info.materials, 0);
   ethd_scene_destroy(s);
 }
-END_TEST
 
-START_TEST(test_empty_texts) {
+TEST(test_empty_texts) {
   static const char *const texts[] = {"", "\n", "#", " \t\r\n#x\n\n", "material soft\n"};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     ethd_scene *s = parse(texts[i]);
@@ -51,10 +50,9 @@ START_TEST(test_empty_texts) {
   ethd_scene_destroy(s);
   ck_assert_int_eq(ethd_scene_parse(NULL, 1, &s, NULL), ETHD_E_ARGUMENT);
 }
-END_TEST
 
 /* Text ends where its length says, in the middle of a number or of a page without a 0. */
-START_TEST(test_length_counts) {
+TEST(test_length_counts) {
   const char text[] = "circle 0 0 1.25";
   for (size_t n = 0; n < sizeof text; n++) {
     char *exact = malloc(n + 1);
@@ -72,9 +70,8 @@ START_TEST(test_length_counts) {
     free(exact);
   }
 }
-END_TEST
 
-START_TEST(test_nul_byte) {
+TEST(test_nul_byte) {
   const char text[] = "circle 0 0 1\n# \0\n";
   ethd_scene *s;
   ethd_error error;
@@ -82,7 +79,6 @@ START_TEST(test_nul_byte) {
   ck_assert(s == NULL && error.line == 2);
   ck_assert_str_eq(error.name, "a NUL byte");
 }
-END_TEST
 
 /* c of a half-plane {x > c} is its distance from the base. */
 static void check_number(const char *word) {
@@ -104,7 +100,7 @@ static uint64_t draw(void) {
   return z ^ z >> 31;
 }
 
-START_TEST(test_numbers) {
+TEST(test_numbers) {
   static const char *const words[] = {"0",
                                       "-0",
                                       "1",
@@ -135,9 +131,8 @@ START_TEST(test_numbers) {
     check_number(word);
   }
 }
-END_TEST
 
-START_TEST(test_materials) {
+TEST(test_materials) {
   ethd_scene *s = parse("circle 9 0 1 material=Hard_2.A-z\n" /* defined below */
                         "material soft k_e=100 b_e=1.5\n"
                         "material Hard_2.A-z k_e=1e5\n"
@@ -158,7 +153,6 @@ START_TEST(test_materials) {
   ck_assert_ptr_null(ethd_scene_material(s, 2));
   ethd_scene_destroy(s);
 }
-END_TEST
 
 #define NAME_31 "abcdefghijklmnopqrstuvwxyz01234"
 #define KEYS_15 "a=1 b=1 c=1 d=1 e=1 f=1 g=1 h=1 i=1 j=1 k=1 l=1 m=1 n=1 o=1 "
@@ -259,7 +253,7 @@ static const refusal refusals[] = {
     {"segment 0 0 1e-150 0", ETHD_E_GEOMETRY, 1, "segment: points 0 and 1"},
 };
 
-START_TEST(test_refusals) {
+TEST(test_refusals) {
   for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
     const refusal *r = &refusals[i];
     ethd_scene *s = (ethd_scene *)&s;
@@ -272,9 +266,8 @@ START_TEST(test_refusals) {
     ck_assert_int_eq(ethd_scene_parse(r->text, strlen(r->text), &s, NULL), r->status);
   }
 }
-END_TEST
 
-START_TEST(test_numbers_of_refusals) {
+TEST(test_numbers_of_refusals) {
   ethd_scene *s;
   ethd_error error;
   const char *text = "circle 0 0 -3";
@@ -293,9 +286,8 @@ START_TEST(test_numbers_of_refusals) {
   ck_assert_int_eq(ethd_scene_parse(text, strlen(text), &s, &error), ETHD_E_UNKNOWN);
   ck_assert(isnan(error.found) && isnan(error.min) && isnan(error.max));
 }
-END_TEST
 
-START_TEST(test_zero_bytes_and_odd_ones) {
+TEST(test_zero_bytes_and_odd_ones) {
   static const char zero[] = "circle 0 0 1\n# a comm\0ent\n";
   static const char words[] = "cir\033cle\n";
   ethd_scene *s;
@@ -305,9 +297,8 @@ START_TEST(test_zero_bytes_and_odd_ones) {
   ck_assert_int_eq(ethd_scene_parse(words, sizeof words - 1, &s, &error), ETHD_E_UNKNOWN);
   ck_assert_str_eq(error.name, "cir?cle"); /* fit for a terminal */
 }
-END_TEST
 
-START_TEST(test_limits) {
+TEST(test_limits) {
   char text[64 * 100];
   ethd_scene *s;
   ethd_error error;
@@ -333,11 +324,10 @@ START_TEST(test_limits) {
     word[length] = '0';
   }
 }
-END_TEST
 
 /* Texts broken by a few changes each: no crash, no scene on failure, a line on every failure, and what is
    taken can be asked. */
-START_TEST(test_broken_texts) {
+TEST(test_broken_texts) {
   enum { ROOM = 512 };
   const char *wanted = getenv("ETHD_FUZZ");
   long cases = wanted ? atol(wanted) : 200000;
@@ -402,28 +392,4 @@ START_TEST(test_broken_texts) {
   ck_assert_int_gt(taken, cases / 20);
   ck_assert_int_gt(refused, cases / 3);
   if (wanted) printf("%ld texts, %ld taken\n", cases, taken);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("scene_parse");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, getenv("ETHD_FUZZ") ? 0 : 60);
-  tcase_add_test(all, test_every_shape);
-  tcase_add_test(all, test_empty_texts);
-  tcase_add_test(all, test_length_counts);
-  tcase_add_test(all, test_nul_byte);
-  tcase_add_test(all, test_numbers);
-  tcase_add_test(all, test_materials);
-  tcase_add_test(all, test_refusals);
-  tcase_add_test(all, test_numbers_of_refusals);
-  tcase_add_test(all, test_zero_bytes_and_odd_ones);
-  tcase_add_test(all, test_limits);
-  tcase_add_test(all, test_broken_texts);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -15,7 +15,7 @@ static char *print(const ethd_scene *scene) {
   return text;
 }
 
-START_TEST(test_print) {
+TEST(test_print) {
   ethd_scene *s = rig_scene(
       "material a k_e=1.5 b_e=0.1\nhalfplane 0.6 0.8 0.30000000000000004 material=a\ncircle 1 2 1e-7\n"
       "capsule 0 0 1 1 .5\nbox 1 2 3 4 0.5 material=b\npolygon 0 0 1 0 1 1\nsegment 0 0 1 1\nmaterial b\n"
@@ -32,13 +32,4 @@ START_TEST(test_print) {
   free(twin);
   ethd_scene_destroy(s);
   ethd_scene_destroy(again);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("scene_print");
-  TCase *all = tcase_create("all");
-  tcase_add_test(all, test_print);
-  suite_add_tcase(suite, all);
-  return rig_run(suite);
 }

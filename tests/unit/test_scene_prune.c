@@ -2,7 +2,6 @@
 #include <check.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene_objects.h"
@@ -57,7 +56,7 @@ static void check_answers(const ethd_scene *whole, const ethd_scene *pruned) {
   }
 }
 
-START_TEST(test_same_answers) {
+TEST(test_same_answers) {
   size_t dropped = 0;
   scene_seed(950);
   for (int s = 0; s < 300; s++) {
@@ -80,10 +79,9 @@ START_TEST(test_same_answers) {
   }
   ck_assert_int_gt((int)dropped, 1000);
 }
-END_TEST
 
 /* A radius that isn't a number leaves nothing out: a scene without its walls would be taken for the whole one. */
-START_TEST(test_radius_that_is_none) {
+TEST(test_radius_that_is_none) {
   ethd_scene *whole = draw(), *pruned;
   ethd_error error;
   ck_assert_uint_eq(ethd_scene_out_of_reach(whole, &arm, NAN), 0);
@@ -93,10 +91,9 @@ START_TEST(test_radius_that_is_none) {
   ck_assert_ptr_null(pruned);
   ethd_scene_destroy(whole);
 }
-END_TEST
 
 /* Objects come back as they were given, and again from what was built of them. */
-START_TEST(test_objects_come_back) {
+TEST(test_objects_come_back) {
   scene_seed(960);
   for (int s = 0; s < 200; s++) {
     object o[8];
@@ -123,7 +120,6 @@ START_TEST(test_objects_come_back) {
     ethd_scene_destroy(scene);
   }
 }
-END_TEST
 
 #define FAR_AWAY "circle 9 9 1 material=soft\n"
 #define NEAR_BY                                                                                                     \
@@ -138,7 +134,7 @@ static ethd_scene *prune_for(const ethd_setup *setup) {
 }
 
 /* A tap gives the same trace but for when the scene was asked. */
-START_TEST(test_same_tap) {
+TEST(test_same_tap) {
   rig a, b;
   int touched = 0;
   rig_open(&a, FAR_AWAY FAR_AWAY NEAR_BY);
@@ -163,7 +159,6 @@ START_TEST(test_same_tap) {
   rig_close(&b);
   ethd_scene_destroy(pruned);
 }
-END_TEST
 
 static ethd_status check_links(const ethd_setup *base, ethd_scene *scene, double link1, double link2) {
   ethd_setup setup = *base;
@@ -175,7 +170,7 @@ static ethd_status check_links(const ethd_setup *base, ethd_scene *scene, double
 }
 
 /* An arm reaches from |l1 - l2| to l1 + l2: each end of it is held alone. */
-START_TEST(test_both_ends) {
+TEST(test_both_ends) {
   rig r;
   rig_open(&r, "circle 0 0 0.001\n" FAR_AWAY NEAR_BY);
   r.setup.arm.link1 = 0.3;
@@ -188,10 +183,9 @@ START_TEST(test_both_ends) {
   ethd_scene_destroy(pruned);
   rig_close(&r);
 }
-END_TEST
 
 /* A larger ring or arm would miss what was dropped for the smaller one; a body may come from anywhere. */
-START_TEST(test_refused_elsewhere) {
+TEST(test_refused_elsewhere) {
   rig r;
   ethd_error error;
   rig_open(&r, FAR_AWAY NEAR_BY);
@@ -213,19 +207,4 @@ START_TEST(test_refused_elsewhere) {
   ck_assert_int_eq(ethd_setup_check(&setup, &error), ETHD_OK);
   ethd_scene_destroy(pruned);
   rig_close(&r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("scene_prune");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_test(all, test_same_answers);
-  tcase_add_test(all, test_radius_that_is_none);
-  tcase_add_test(all, test_objects_come_back);
-  tcase_add_test(all, test_same_tap);
-  tcase_add_test(all, test_refused_elsewhere);
-  tcase_add_test(all, test_both_ends);
-  suite_add_tcase(suite, all);
-  return rig_run(suite);
 }

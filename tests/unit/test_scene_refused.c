@@ -23,7 +23,7 @@ static ethd_status one(ethd_shape shape, int32_t material, const double *numbers
   return create(&(ethd_scene_def){&object, 1, NULL, 0});
 }
 
-START_TEST(test_arrays_that_are_missing) {
+TEST(test_arrays_that_are_missing) {
   ck_assert_int_eq(create(&(ethd_scene_def){NULL, 1, NULL, 0}), ETHD_E_ARGUMENT);
   ck_assert_str_eq(error.name, "scene");
   ck_assert_int_eq(create(&(ethd_scene_def){NULL, 0, NULL, 1}), ETHD_E_ARGUMENT);
@@ -31,9 +31,8 @@ START_TEST(test_arrays_that_are_missing) {
   ck_assert_int_eq(one(ETHD_SHAPE_CIRCLE, -1, NULL, 3), ETHD_E_ARGUMENT);
   ck_assert(strcmp(error.name, "numbers") == 0 && error.line == 7);
 }
-END_TEST
 
-START_TEST(test_shapes_that_are_none) {
+TEST(test_shapes_that_are_none) {
   const double p[] = {0, 0, 1};
   const ethd_shape none[] = {(ethd_shape)-1, ETHD_SHAPE_COUNT};
   for (int i = 0; i < 2; i++) {
@@ -43,17 +42,15 @@ START_TEST(test_shapes_that_are_none) {
     ck_assert_str_eq(ethd_shape_form(none[i]), "");
   }
 }
-END_TEST
 
 /* No room is asked for points that can't be: the count is far over what a number may have. */
-START_TEST(test_count_that_cannot_be) {
+TEST(test_count_that_cannot_be) {
   const double p[] = {0, 0, 1};
   ck_assert_int_eq(one(ETHD_SHAPE_POLYGON, 5, p, (size_t)1 << 33), ETHD_E_RANGE);
   ck_assert_str_eq(error.name, "material");
 }
-END_TEST
 
-START_TEST(test_names_without_an_end) {
+TEST(test_names_without_an_end) {
   ethd_material m = {.name = "soft", .count = 1, .line = 3, .values = {{"k_e", 500}}};
   const ethd_scene_def def = {NULL, 0, &m, 1};
   ck_assert_int_eq(create(&def), ETHD_OK);
@@ -67,10 +64,9 @@ START_TEST(test_names_without_an_end) {
   ck_assert_int_eq(create(&def), ETHD_E_ARGUMENT);
   ck_assert_str_eq(error.name, "material");
 }
-END_TEST
 
 /* Edges on one line: apart, touching at a point, and one within the other. */
-START_TEST(test_edges_on_one_line) {
+TEST(test_edges_on_one_line) {
   static const struct {
     double p[16];
     int count, meet;
@@ -92,10 +88,9 @@ START_TEST(test_edges_on_one_line) {
     ck_assert_int_eq(one(ETHD_SHAPE_POLYGON, -1, back, 16), cases[i].meet ? ETHD_E_GEOMETRY : ETHD_OK);
   }
 }
-END_TEST
 
 /* Two points of a round that have changed places. */
-START_TEST(test_edges_by_number) {
+TEST(test_edges_by_number) {
   enum { POINTS = 240 };
   double p[2 * POINTS];
   for (int k = 0; k < POINTS; k++) {
@@ -111,18 +106,4 @@ START_TEST(test_edges_by_number) {
     }
   ck_assert_int_eq(one(ETHD_SHAPE_POLYGON, -1, p, 2 * POINTS), ETHD_E_GEOMETRY);
   ck_assert_str_eq(error.name, "polygon: edges 117 and 119 meet");
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("scene refused");
-  TCase *t = tcase_create("scene refused");
-  tcase_add_test(t, test_arrays_that_are_missing);
-  tcase_add_test(t, test_shapes_that_are_none);
-  tcase_add_test(t, test_count_that_cannot_be);
-  tcase_add_test(t, test_names_without_an_end);
-  tcase_add_test(t, test_edges_on_one_line);
-  tcase_add_test(t, test_edges_by_number);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

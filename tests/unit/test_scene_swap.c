@@ -3,7 +3,6 @@
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -76,7 +75,7 @@ static motion tap(int tick) {
   return m;
 }
 
-START_TEST(test_swapped_in_a_tap) {
+TEST_LOOP(test_swapped_in_a_tap, 0, 2) {
   rig r;
   int swaps = 0, touched = 0, most = 0;
   rig_open(&r, RIG_WALL);
@@ -121,14 +120,4 @@ START_TEST(test_swapped_in_a_tap) {
          (int)((last - first) / page));
   rig_close(&r);
   ethd_scene_destroy(held);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("scene_swap");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_loop_test(all, test_swapped_in_a_tap, 0, 2);
-  suite_add_tcase(suite, all);
-  return rig_run(suite);
 }

@@ -1,11 +1,11 @@
 /* Simple polygons against a check of every pair of edges in whole numbers, and exact orientation. */
-#include <check.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "scene/check.h"
 #include "scene/scene.h"
+#include "unit/suite.h"
 
 static uint64_t seed;
 
@@ -48,7 +48,7 @@ static int is_simple_by_pairs(const long (*p)[2], size_t n) {
   return 1;
 }
 
-START_TEST(test_grid_polygons) {
+TEST(test_grid_polygons) {
   enum { MOST = 9, CASES = 300000 };
   int simple = 0;
   seed = 1;
@@ -78,10 +78,9 @@ START_TEST(test_grid_polygons) {
   }
   ck_assert_int_gt(simple, CASES / 100);
 }
-END_TEST
 
 /* A star of n rays about the origin is simple; with two points swapped it isn't. */
-START_TEST(test_large_polygon) {
+TEST(test_large_polygon) {
   enum { N = 100000 };
   double *points = malloc(2 * N * sizeof *points);
   void *room = malloc(ethd__simple_room(N));
@@ -103,10 +102,9 @@ START_TEST(test_large_polygon) {
   free(room);
   free(points);
 }
-END_TEST
 
 /* A comb whose diagonal teeth have bounds that all overlap. */
-START_TEST(test_diagonal_comb) {
+TEST(test_diagonal_comb) {
   enum { TEETH = 30000, N = 2 * TEETH + 1 };
   double *points = malloc(2 * N * sizeof *points);
   void *room = malloc(ethd__simple_room(N));
@@ -125,10 +123,9 @@ START_TEST(test_diagonal_comb) {
   free(room);
   free(points);
 }
-END_TEST
 
 /* a + k (b - a) in steps of powers of two is on the line; an ulp beside it isn't. */
-START_TEST(test_orientation_is_exact) {
+TEST(test_orientation_is_exact) {
   seed = 3;
   for (int c = 0; c < 100000; c++) {
     double ux = (double)(int64_t)(draw() >> 20) * 0x1p-44, uy = (double)(int64_t)(draw() >> 20) * 0x1p-44;
@@ -144,10 +141,9 @@ START_TEST(test_orientation_is_exact) {
     ck_assert_int_eq(ethd__orient(a, b, above), -ethd__orient(b, a, above));
   }
 }
-END_TEST
 
 /* Whole numbers of 52 bits, nearly on a line, against 128 bits. */
-START_TEST(test_orientation_of_whole_numbers) {
+TEST(test_orientation_of_whole_numbers) {
   __extension__ typedef __int128 wide;
   int zeros = 0, others = 0;
   seed = 4;
@@ -169,10 +165,9 @@ START_TEST(test_orientation_of_whole_numbers) {
   }
   ck_assert(zeros > 10000 && others > 10000);
 }
-END_TEST
 
 /* Beside the diagonal, in steps of an ulp of 1/2 (Kettner et al. 2008): rounded differences get it wrong. */
-START_TEST(test_orientation_beside_a_diagonal) {
+TEST(test_orientation_beside_a_diagonal) {
   ethd_vec q = {12, 12}, r = {24, 24};
   for (int i = 0; i < 256; i++)
     for (int j = 0; j < 256; j++) {
@@ -182,23 +177,4 @@ START_TEST(test_orientation_beside_a_diagonal) {
       ck_assert_int_eq(ethd__orient(q, r, p), expected);
       ck_assert_int_eq(ethd__orient(r, q, p), -expected);
     }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("scene_sweep");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_test(all, test_grid_polygons);
-  tcase_add_test(all, test_large_polygon);
-  tcase_add_test(all, test_diagonal_comb);
-  tcase_add_test(all, test_orientation_is_exact);
-  tcase_add_test(all, test_orientation_of_whole_numbers);
-  tcase_add_test(all, test_orientation_beside_a_diagonal);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -1,11 +1,11 @@
 /* Contacts against samples of the boundary. */
-#include <check.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "scene/shapes.h"
 #include "scene_objects.h"
+#include "unit/suite.h"
 
 static ethd_vec on_chain(const double *p, size_t n, size_t k, double t) {
   const double *a = p + 2 * (k % n), *b = p + 2 * ((k + 1) % n);
@@ -80,7 +80,7 @@ static void check_touches(const object *o, const ethd_scene *scene, ethd_vec x, 
   }
 }
 
-START_TEST(test_touches_of_chains) {
+TEST_LOOP(test_touches_of_chains, 0, ETHD_SHAPE_COUNT) {
   enum { SCENES = 300, EACH = 40 };
   ethd_shape shape = (ethd_shape)_i;
   if (!ethd__shapes[shape].is_chain) return;
@@ -93,10 +93,9 @@ START_TEST(test_touches_of_chains) {
     ethd_scene_destroy(scene);
   }
 }
-END_TEST
 
 /* Solids of one smooth or convex surface: the nearest, and nothing else. */
-START_TEST(test_touches_of_convex_solids) {
+TEST(test_touches_of_convex_solids) {
   ethd_shape shapes[ETHD_SHAPE_COUNT];
   int count = 0;
   for (int k = 0; k < ETHD_SHAPE_COUNT; k++)
@@ -119,9 +118,8 @@ START_TEST(test_touches_of_convex_solids) {
     ethd_scene_destroy(scene);
   }
 }
-END_TEST
 
-START_TEST(test_channel_and_corner) {
+TEST(test_channel_and_corner) {
   /* A notch of width 0.2 in a block, open above. */
   ethd_scene *s = SCENE_ONE(ETHD_SHAPE_POLYGON, 0, 0, 1, 0, 1, 1, 0.6, 1, 0.6, 0.3, 0.4, 0.3, 0.4, 1, 0, 1);
   ethd_touch t[8];
@@ -135,10 +133,9 @@ START_TEST(test_channel_and_corner) {
   ck_assert(t[0].feature == 0 && t[0].distance == 0.1 && t[0].n.y == 1);
   ethd_scene_destroy(s);
 }
-END_TEST
 
 /* A foot a nanometre from a corner: the edge's normal, although the corner is as near in double. */
-START_TEST(test_foot_beside_a_vertex) {
+TEST(test_foot_beside_a_vertex) {
   static const double there[] = {0, 0, 1, 0, 2, -1}, back[] = {2, -1, 1, 0, 0, 0};
   for (int i = 0; i < 2; i++) {
     ethd_scene *s = scene_one(ETHD_SHAPE_POLYLINE, 6, i ? back : there);
@@ -152,9 +149,8 @@ START_TEST(test_foot_beside_a_vertex) {
     ethd_scene_destroy(s);
   }
 }
-END_TEST
 
-START_TEST(test_shared_vertices_count_once) {
+TEST(test_shared_vertices_count_once) {
   /* A straight line of four edges, seen from over its inner points, as wall and as polygon. */
   ethd_scene *s = SCENE_ONE(ETHD_SHAPE_POLYLINE, 0, 0, 0.1, 0, 0.2, 0, 0.30000000000000004, 0, 1, 0);
   ethd_touch t[8];
@@ -188,10 +184,9 @@ START_TEST(test_shared_vertices_count_once) {
   ck_assert(t[0].feature == 0 && t[0].side == 0);
   ethd_scene_destroy(s);
 }
-END_TEST
 
 /* All, in order; the deepest when there is no room for all. */
-START_TEST(test_order_and_overflow) {
+TEST(test_order_and_overflow) {
   enum { OBJECTS = 30 };
   scene_seed(700);
   for (int s = 0; s < 300; s++) {
@@ -223,9 +218,8 @@ START_TEST(test_order_and_overflow) {
     ethd_scene_destroy(scene);
   }
 }
-END_TEST
 
-START_TEST(test_follow) {
+TEST(test_follow) {
   enum { ROOM = 100 };
   scene_seed(800);
   for (int s = 0; s < 3000; s++) {
@@ -243,24 +237,4 @@ START_TEST(test_follow) {
     ethd_scene_destroy(alone);
     ethd_scene_destroy(scene);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("scene_touches");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_loop_test(all, test_touches_of_chains, 0, ETHD_SHAPE_COUNT);
-  tcase_add_test(all, test_touches_of_convex_solids);
-  tcase_add_test(all, test_channel_and_corner);
-  tcase_add_test(all, test_foot_beside_a_vertex);
-  tcase_add_test(all, test_shared_vertices_count_once);
-  tcase_add_test(all, test_order_and_overflow);
-  tcase_add_test(all, test_follow);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -1,11 +1,10 @@
 /* The screen's geometry and the led hand; no window is needed. */
-#include <check.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include "screen/hand.h"
 #include "screen/view.h"
 #include "unit/draw.h"
+#include "unit/suite.h"
 
 static ethd__room room(void) { return ethd__room_of(0.238, 0.2816, 0.25, 0.0075, 1280, 720); }
 
@@ -15,7 +14,7 @@ static void inside(const ethd__room *r, ethd_vec x) {
   ck_assert(a.y - r->finger >= r->bottom - 1e-15 && a.y + r->finger <= r->top + 1e-15);
 }
 
-START_TEST(test_stays_inside) {
+TEST(test_stays_inside) {
   ethd__room r = room();
   uint64_t seed = 5;
   for (int k = 0; k < 100000; k++)
@@ -26,10 +25,9 @@ START_TEST(test_stays_inside) {
   ck_assert(same.x == within.x && same.y == within.y);
   ck_assert_double_eq_tol(ethd__room_avatar(&r, (ethd_vec){0.2, 0.25}).x, 0.2455, 1e-15); /* stands at the wall */
 }
-END_TEST
 
 /* Everything fits into any window, and pixels are points. */
-START_TEST(test_pixels) {
+TEST(test_pixels) {
   static const int sizes[][2] = {{1280, 720}, {320, 200}, {720, 1280}, {16384, 300}};
   for (int i = 0; i < 4; i++) {
     ethd__room r = ethd__room_of(0.238, 0.2816, 0.25, 0.0075, sizes[i][0], sizes[i][1]);
@@ -40,11 +38,10 @@ START_TEST(test_pixels) {
     ck_assert(fabs(back.x - r.right) < 1e-12 && fabs(back.y - r.top) < 1e-12);
   }
 }
-END_TEST
 
 /* What the path says at t when the simulation is there is what it says ever after: nothing changes behind or
    under it. And it comes to where the pointer stays. */
-START_TEST(test_hand_is_causal) {
+TEST(test_hand_is_causal) {
   enum { TICKS = 2000 };
   static ethd_vec seen[TICKS], speed[TICKS];
   ethd__hand hand;
@@ -68,10 +65,9 @@ START_TEST(test_hand_is_causal) {
   }
   ethd__hand_free(&hand);
 }
-END_TEST
 
 /* A pointer that jumps is followed within 60 ms to a tenth. */
-START_TEST(test_hand_is_quick) {
+TEST(test_hand_is_quick) {
   ethd__hand hand;
   ethd_vec x, v;
   ck_assert_int_eq(ethd__hand_create(&hand, (ethd_vec){0.3, 0.25}, 1), ETHD_OK);
@@ -86,7 +82,6 @@ START_TEST(test_hand_is_quick) {
   ck_assert_double_lt(x.x, 0.21);
   ethd__hand_free(&hand);
 }
-END_TEST
 
 /* A pointer that is led at 0.200 m/s, on whole pixels, heard of `rate` times a second and up to 1 ms late: the hand's
    speeds from 0.1 s on. */
@@ -114,7 +109,7 @@ static void lead_steadily(double rate, double scale, double *least, double *most
   ethd__hand_free(&hand);
 }
 
-START_TEST(test_hand_is_as_fast_as_the_pointer) {
+TEST(test_hand_is_as_fast_as_the_pointer) {
   static const double rates[] = {60, 90, 125, 500, 1000};
   for (int i = 0; i < 5; i++)
     for (double scale = 3500; scale < 20000; scale *= 2) {
@@ -123,21 +118,4 @@ START_TEST(test_hand_is_as_fast_as_the_pointer) {
       ck_assert_msg(least > 0.184 && most < 0.216, "%g Hz, %g px/m: %.4f to %.4f m/s", rates[i], scale, least, most);
       ck_assert_msg(fabs(mean - 0.2) < 0.0004, "%g Hz, %g px/m: %.4f m/s", rates[i], scale, mean);
     }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("screen");
-  TCase *tests = tcase_create("screen");
-  tcase_add_test(tests, test_stays_inside);
-  tcase_add_test(tests, test_pixels);
-  tcase_add_test(tests, test_hand_is_causal);
-  tcase_add_test(tests, test_hand_is_quick);
-  tcase_add_test(tests, test_hand_is_as_fast_as_the_pointer);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed != 0;
 }

@@ -21,7 +21,7 @@ static void expect(ethd_setup s, ethd_status status, const char *name) {
 
 /* ---- laws ---- */
 
-START_TEST(test_no_law) {
+TEST(test_no_law) {
   ethd_setup s = ethd_setup_default();
   s.tracking = NULL;
   expect(s, ETHD_E_ARGUMENT, "tracking");
@@ -33,7 +33,6 @@ START_TEST(test_no_law) {
   expect(s, ETHD_E_ARGUMENT, "transition");
   ck_assert(ethd_setup_range(&s) == 2 * s.ring_radius + s.ring_radius - s.finger_radius_max);
 }
-END_TEST
 
 static ethd_error refused(const ethd_law *law) {
   memset(&error, 0, sizeof error);
@@ -42,7 +41,7 @@ static ethd_error refused(const ethd_law *law) {
 }
 
 /* What was found and what is allowed are told. */
-START_TEST(test_law_in_numbers) {
+TEST(test_law_in_numbers) {
   ethd_transition_law law = ethd_transition_smooth;
   law.law.kind = (ethd_kind)3;
   ethd_error e = refused(&law.law);
@@ -61,17 +60,15 @@ START_TEST(test_law_in_numbers) {
   e = refused(&law.law);
   ck_assert(!strcmp(e.name, "smooth") && e.found == ETHD_STATE_MAX + 1 && e.min == 0 && e.max == ETHD_STATE_MAX);
 }
-END_TEST
 
 /* A law of another kind, larger and smaller: neither is taken for what the setup calls it. */
-START_TEST(test_law_of_another_kind) {
+TEST(test_law_of_another_kind) {
   ethd_setup s = ethd_setup_default();
   s.contact = (const ethd_contact_law *)(const void *)&ethd_transition_smooth;
   expect(s, ETHD_E_ARGUMENT, "contact");
   s.contact = (const ethd_contact_law *)(const void *)&ethd_tracking_pd;
   expect(s, ETHD_E_ARGUMENT, "contact");
 }
-END_TEST
 
 static ethd_status too_stiff(const double *p, ethd_error *e) {
   if (p[0] <= 1000) return ETHD_OK;
@@ -79,7 +76,7 @@ static ethd_status too_stiff(const double *p, ethd_error *e) {
   return ETHD_E_RANGE;
 }
 
-START_TEST(test_foreign_law) {
+TEST(test_foreign_law) {
   ethd_contact_law law = ethd_contact_kelvin_voigt;
   ethd_setup s = ethd_setup_default();
   law.law.check = too_stiff;
@@ -91,7 +88,6 @@ START_TEST(test_foreign_law) {
   law.law.abi = ETHD_ABI + 1;
   expect(s, ETHD_E_ABI, "contact.abi");
 }
-END_TEST
 
 /* A check that only says no, as it may: it is asked with an error of its own, and its law's id says what is wrong. */
 static ethd_status silent(const double *p, ethd_error *e) {
@@ -99,7 +95,7 @@ static ethd_status silent(const double *p, ethd_error *e) {
   return p[0] > 1000 ? ETHD_E_GEOMETRY : ETHD_STATUS_BUSY;
 }
 
-START_TEST(test_silent_law) {
+TEST(test_silent_law) {
   ethd_contact_law law = ethd_contact_kelvin_voigt;
   ethd_setup s = ethd_setup_default();
   law.law.check = silent;
@@ -113,10 +109,9 @@ START_TEST(test_silent_law) {
   ck_assert(error.status == ETHD_E_GEOMETRY && error.line == 0 && isnan(error.found) && isnan(error.min));
   ck_assert_str_eq(error.name, "contact.kelvin-voigt");
 }
-END_TEST
 
 /* Laws that nobody has checked yet are chosen without reading or writing beyond anything, and then refused. */
-START_TEST(test_unchecked_laws) {
+TEST(test_unchecked_laws) {
   static ethd_param rows[ETHD_PARAMS_MAX + 1];
   ethd_contact_law law = ethd_contact_kelvin_voigt;
   const ethd_law *const laws[] = {&law.law, NULL};
@@ -145,7 +140,6 @@ START_TEST(test_unchecked_laws) {
   ethd_setup_transition(&s, NULL);
   ck_assert(!s.tracking && !s.contact && !s.transition && s.tracking_p[0] == 0 && s.transition_p[0] == 0);
 }
-END_TEST
 
 /* ---- how far a law looks ahead ---- */
 
@@ -156,7 +150,7 @@ static double range_of(const double *p, double speed) {
   return range;
 }
 
-START_TEST(test_range) {
+TEST(test_range) {
   const double none = 2 * 0.012 + 0.012 - 0.0095;
   ethd_transition_law law = ethd_transition_smooth;
   ethd_setup s = ethd_setup_default();
@@ -176,11 +170,10 @@ START_TEST(test_range) {
   ck_assert_double_eq_tol(ethd_setup_range(&s), none, 1e-15);
   ck_assert_int_eq(checked(&s), ETHD_OK);
 }
-END_TEST
 
 /* At a distance of 30 mm a law that looks 40 mm ahead has a contact, one of 20 mm has none, and one that says nothing
    sensible looks as far as the library does. */
-START_TEST(test_range_of_contacts) {
+TEST(test_range_of_contacts) {
   static const struct {
     double range, d;
     int contacts;
@@ -199,11 +192,10 @@ START_TEST(test_range_of_contacts) {
     rig_close(&r);
   }
 }
-END_TEST
 
 /* ---- scenes ---- */
 
-START_TEST(test_scene_of_another_reach) {
+TEST(test_scene_of_another_reach) {
   rig r;
   ethd_scene *pruned;
   rig_open(&r, "circle 0.1 0 0.01\ncircle 0.3 0 0.01\ncircle 3 0 0.01\n");
@@ -218,19 +210,17 @@ START_TEST(test_scene_of_another_reach) {
   r.setup.scene = r.scene;
   rig_close(&r);
 }
-END_TEST
 
-START_TEST(test_material_without_error) {
+TEST(test_material_without_error) {
   rig r;
   rig_open(&r, "material odd k_e=-1\n");
   ck_assert_int_eq(ethd_setup_check(&r.setup, NULL), ETHD_E_RANGE);
   rig_close(&r);
 }
-END_TEST
 
 /* ---- methods and names ---- */
 
-START_TEST(test_methods_that_are_none) {
+TEST(test_methods_that_are_none) {
   ethd_setup s = ethd_setup_default();
   s.fit = ETHD_FIT_COUNT;
   expect(s, ETHD_E_UNKNOWN, "finger_fit.method");
@@ -250,9 +240,8 @@ START_TEST(test_methods_that_are_none) {
   expect(s, ETHD_E_UNKNOWN, "velocity.method");
   ck_assert(s.filter_p[3] == 0 && s.fit_p[0] == 0 && s.velocity_p[0] == 0);
 }
-END_TEST
 
-START_TEST(test_names_with_a_tail) {
+TEST(test_names_with_a_tail) {
   ethd_setup s = ethd_setup_default();
   const char *const names[] = {"limits.reach[1]x", "limits.reach[1", "limits.reach[]", "limits.reach[x]",
                                "limits.reach[99]"};
@@ -261,9 +250,8 @@ START_TEST(test_names_with_a_tail) {
     ck_assert_int_eq(ethd_setup_set(&s, names[i], 0.1, &error), ETHD_E_RANGE);
   ck_assert(s.limits.reach[1] == 0.4);
 }
-END_TEST
 
-START_TEST(test_rows_that_are_none) {
+TEST(test_rows_that_are_none) {
   const ethd_fault none[] = {(ethd_fault)-1, ETHD_FAULT_COUNT};
   for (int i = 0; i < 2; i++) {
     ck_assert_str_eq(ethd_fault_bound(none[i]), "");
@@ -271,10 +259,9 @@ START_TEST(test_rows_that_are_none) {
     ck_assert(ethd_fault_reaction(none[i], 0) == ETHD_REACTION_NONE);
   }
 }
-END_TEST
 
 /* A bad parameter's name is told without what steers a terminal, and cut where there is no room for it. */
-START_TEST(test_names_in_errors) {
+TEST(test_names_in_errors) {
   const char *const names[] = {"del\x7f", "a{b", "abcdefghijklmnopqrstuvwxyz_012345",
                                "0123456789abcdefghijklmnopqrstu"};
   const char *const told[] = {"del?", "a{b", "abcdefghijklmnopqrstuvwxyz_012345", ""};
@@ -283,26 +270,4 @@ START_TEST(test_names_in_errors) {
     ck_assert_int_eq(ethd_params_check_table(&row, 1, &error), i < 3 ? ETHD_E_TABLE : ETHD_OK);
     if (i < 3) ck_assert_str_eq(error.name, told[i]);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("setup refused");
-  TCase *t = tcase_create("setup refused");
-  tcase_add_test(t, test_no_law);
-  tcase_add_test(t, test_law_in_numbers);
-  tcase_add_test(t, test_law_of_another_kind);
-  tcase_add_test(t, test_foreign_law);
-  tcase_add_test(t, test_silent_law);
-  tcase_add_test(t, test_unchecked_laws);
-  tcase_add_test(t, test_range);
-  tcase_add_test(t, test_range_of_contacts);
-  tcase_add_test(t, test_scene_of_another_reach);
-  tcase_add_test(t, test_material_without_error);
-  tcase_add_test(t, test_methods_that_are_none);
-  tcase_add_test(t, test_names_with_a_tail);
-  tcase_add_test(t, test_rows_that_are_none);
-  tcase_add_test(t, test_names_in_errors);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

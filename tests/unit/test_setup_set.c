@@ -1,5 +1,4 @@
 /* Numbers of a setup by the names that a configuration gives them. */
-#include <check.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -8,6 +7,7 @@
 #include <string.h>
 
 #include "ethd/config.h"
+#include "unit/suite.h"
 
 /* ---- each name is the number it says ---- */
 
@@ -65,7 +65,7 @@ static const struct {
     {"transition.t_max", AT(transition_p[4]), 0.1},
 };
 
-START_TEST(test_numbers) {
+TEST_LOOP(test_numbers, 0, sizeof numbers / sizeof *numbers) {
   ethd_setup s = ethd_setup_default(), expected = s;
   memcpy((char *)&expected + numbers[_i].at, &numbers[_i].value, sizeof(double));
   ck_assert(memcmp(&s, &expected, sizeof s) != 0);
@@ -73,16 +73,14 @@ START_TEST(test_numbers) {
   ck_assert_msg(memcmp(&s, &expected, sizeof s) == 0, "%s", numbers[_i].name);
   ck_assert(ethd_setup_get(&s, numbers[_i].name) == numbers[_i].value);
 }
-END_TEST
 
-START_TEST(test_mechanism) {
+TEST(test_mechanism) {
   ethd_setup s = ethd_setup_default();
   ck_assert(ethd_setup_get(&s, "arm.mechanism") == 0);
   ck_assert_int_eq(ethd_setup_set(&s, "arm.mechanism", 1, NULL), ETHD_OK);
   ck_assert(s.arm.mechanism == ETHD_ARM_SERIAL && ethd_setup_get(&s, "arm.mechanism") == 1);
   ck_assert_int_eq(ethd_setup_set(&s, "arm.mechanism", 0.5, NULL), ETHD_E_RANGE);
 }
-END_TEST
 
 /* ---- each key that there is, under each law and method, as ethd-check --laws lists them ---- */
 
@@ -134,7 +132,7 @@ static int check_keys(const char *section, const char *chooser, const char *id) 
   return count;
 }
 
-START_TEST(test_every_key) {
+TEST_LOOP(test_every_key, 0, ETHD_SETUP_PARTS) {
   const ethd_setup_part *part = &ethd_setup_parts[_i];
   int keys = 0;
   for (uint32_t i = 0; i < part->count; i++) keys += check_keys(part->section, part->chooser, part->methods[i].id);
@@ -142,9 +140,8 @@ START_TEST(test_every_key) {
     if ((*law)->kind == part->kind) keys += check_keys(part->section, part->chooser, (*law)->id);
   ck_assert_int_gt(keys, 30);
 }
-END_TEST
 
-START_TEST(test_chosen) {
+TEST(test_chosen) {
   const ethd_setup_part *contact = ethd_setup_part_of("contact"), *velocity = ethd_setup_part_of("velocity");
   const char *const choices[] = {"contact", "spring", "velocity", "lsq", NULL};
   ethd_setup s = made(choices);
@@ -168,7 +165,6 @@ START_TEST(test_chosen) {
   s.contact = NULL;
   ck_assert_ptr_null(ethd_setup_chosen(&s, contact).id);
 }
-END_TEST
 
 /* ---- refusals change nothing ---- */
 
@@ -201,7 +197,7 @@ static const struct {
 
 static bool same(double a, double b) { return a == b || (isnan(a) && isnan(b)); }
 
-START_TEST(test_refusals) {
+TEST_LOOP(test_refusals, 0, sizeof refusals / sizeof *refusals) {
   ethd_setup s = ethd_setup_default(), before = s;
   ethd_error error;
   ck_assert_int_eq(ethd_setup_set(&s, refusals[_i].name, refusals[_i].value, &error), refusals[_i].status);
@@ -210,31 +206,12 @@ START_TEST(test_refusals) {
   ck_assert(same(error.min, refusals[_i].min) && same(error.max, refusals[_i].max));
   ck_assert(memcmp(&s, &before, sizeof s) == 0);
 }
-END_TEST
 
-START_TEST(test_not_made) {
+TEST(test_not_made) {
   ethd_setup s;
   ethd_error error;
   memset(&s, 0, sizeof s);
   ck_assert_int_eq(ethd_setup_set(&s, "ring.radius", 0.01, &error), ETHD_E_ARGUMENT);
   ck_assert(s.ring_radius == 0 && isnan(ethd_setup_get(&s, "ring.radius")));
   ck_assert_int_eq(ethd_setup_set(NULL, "ring.radius", 0.01, NULL), ETHD_E_ARGUMENT);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("setup_set");
-  TCase *t = tcase_create("setup_set");
-  tcase_add_loop_test(t, test_numbers, 0, sizeof numbers / sizeof *numbers);
-  tcase_add_test(t, test_mechanism);
-  tcase_add_loop_test(t, test_every_key, 0, ETHD_SETUP_PARTS);
-  tcase_add_test(t, test_chosen);
-  tcase_add_loop_test(t, test_refusals, 0, sizeof refusals / sizeof *refusals);
-  tcase_add_test(t, test_not_made);
-  suite_add_tcase(suite, t);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -1,10 +1,10 @@
 /* Frames of shapes: drawn bit by bit they look as drawn at once, and what stays costs nothing. No display is needed. */
-#include <check.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "screen/window.h"
 #include "unit/draw.h"
+#include "unit/suite.h"
 
 enum { WIDTH = 320, HEIGHT = 200 };
 
@@ -51,7 +51,7 @@ static void list(ethd__window *w, uint64_t number) {
   for (uint64_t i = 0; i < count; i++) put(w, 1000 * (50 * i + (number + i) / (1 + i % 7)));
 }
 
-START_TEST(test_looks_as_if_drawn_at_once) {
+TEST(test_looks_as_if_drawn_at_once) {
   ethd__window w = fresh();
   SDL_Surface *kept = pixels(), *anew = pixels();
   size_t partly = 0;
@@ -70,10 +70,9 @@ START_TEST(test_looks_as_if_drawn_at_once) {
   SDL_FreeSurface(anew);
   end(&w);
 }
-END_TEST
 
 /* Nothing lies outside of the boxes that are said to have changed. */
-START_TEST(test_says_what_changed) {
+TEST(test_says_what_changed) {
   ethd__window w = fresh();
   SDL_Surface *now = pixels(), *before = pixels();
   for (uint64_t number = 0; number < 80; number++) {
@@ -92,7 +91,6 @@ START_TEST(test_says_what_changed) {
   SDL_FreeSurface(before);
   end(&w);
 }
-END_TEST
 
 static void page(ethd__window *w, double x, const char *word, uint8_t red) {
   static const SDL_Color white = {255, 255, 255, 255};
@@ -102,7 +100,7 @@ static void page(ethd__window *w, double x, const char *word, uint8_t red) {
   ethd__window_text(w, ETHD_TEXT_LARGE, 160, 150, word, white);
 }
 
-START_TEST(test_what_stays_costs_nothing) {
+TEST(test_what_stays_costs_nothing) {
   ethd__window w = fresh();
   SDL_Surface *onto = pixels();
   page(&w, 50, "Tap", 255);
@@ -129,9 +127,8 @@ START_TEST(test_what_stays_costs_nothing) {
   SDL_FreeSurface(onto);
   end(&w);
 }
-END_TEST
 
-START_TEST(test_last_line_is_not_cut) {
+TEST(test_last_line_is_not_cut) {
   ethd__window w = fresh();
   SDL_Surface *onto = pixels();
   w.changed_count = 0;
@@ -142,10 +139,9 @@ START_TEST(test_last_line_is_not_cut) {
   SDL_FreeSurface(onto);
   end(&w);
 }
-END_TEST
 
 /* A disc weighs what its circle does, wherever between pixels it stands, and keeps within its radius. */
-START_TEST(test_disc_is_round) {
+TEST(test_disc_is_round) {
   ethd__window w = fresh();
   SDL_Surface *onto = pixels();
   for (uint64_t k = 0; k < 50; k++) {
@@ -163,22 +159,4 @@ START_TEST(test_disc_is_round) {
   }
   SDL_FreeSurface(onto);
   end(&w);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("shapes");
-  TCase *tests = tcase_create("shapes");
-  tcase_set_timeout(tests, 60);
-  tcase_add_test(tests, test_looks_as_if_drawn_at_once);
-  tcase_add_test(tests, test_says_what_changed);
-  tcase_add_test(tests, test_what_stays_costs_nothing);
-  tcase_add_test(tests, test_last_line_is_not_cut);
-  tcase_add_test(tests, test_disc_is_round);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed != 0;
 }

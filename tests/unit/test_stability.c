@@ -1,12 +1,12 @@
 /* The spectral radius of the sampled loop against the closed forms, and against the estimators
    themselves in a loop that is stepped through. */
-#include <check.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bounds/loops.h"
 #include "bounds/motion.h"
+#include "unit/suite.h"
 
 #define M 0.3
 #define T 0.001
@@ -25,7 +25,7 @@ static void check_near(double value, double expected, double share, const char *
 }
 
 /* The curve's own points: a gain over it is unstable, under it stable, within 0.5 %. */
-START_TEST(test_boundary) {
+TEST(test_boundary) {
   for (int n = 0; n <= 4; n++)
     for (int i = 1; i < 16; i++) {
       double th = M_PI / (2 * (n + 1)) * i / 16, t = tan(th / 2), k, b;
@@ -39,10 +39,9 @@ START_TEST(test_boundary) {
       if (i >= 4) check_near(ethd__sampled_mass_min(&l), M, 5e-3, "smallest mass"); /* below it hardly matters */
     }
 }
-END_TEST
 
 /* Largest K of the page: 0.686, 0.1445, 0.0624 m/T^2; largest B of a free ring: 2, 0.828, 0.536 m/T. */
-START_TEST(test_published_numbers) {
+TEST(test_published_numbers) {
   static const double largest_k[] = {0.686, 0.1445, 0.0624}, largest_b[] = {2, 0.828, 0.536};
   for (int n = 0; n < 3; n++) {
     double most = 0;
@@ -61,10 +60,9 @@ START_TEST(test_published_numbers) {
   l.p[0] = 16;
   check_near(ethd__sampled_mass_min(&l), 0.4, 0.03, "smallest mass with a window of 15 ms");
 }
-END_TEST
 
 /* Small gains: K = B / (T (n + 1/2)), whatever the estimator. */
-START_TEST(test_small_gains) {
+TEST(test_small_gains) {
   for (int method = 0; method < ETHD_VELOCITY_COUNT; method++)
     for (int n = 0; n < 3; n++) {
       ethd__sampled_loop l = loop_of((ethd_velocity_method)method, 1, 0.02);
@@ -72,9 +70,8 @@ START_TEST(test_small_gains) {
       check_near(ethd__sampled_stiffness_max(&l), 0.02 / (T * (n + 0.5)), 0.02, ethd_velocity_methods[method].id);
     }
 }
-END_TEST
 
-START_TEST(test_trivial_loops) {
+TEST(test_trivial_loops) {
   ethd__sampled_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 0, 0);
   check_near(ethd__sampled_radius(&l), 1, 1e-6, "a free mass");
   l.stiffness = 1000;
@@ -83,7 +80,6 @@ START_TEST(test_trivial_loops) {
   l.damping = 45;
   check_near(ethd__sampled_passive_friction(&l), 45.5, 1e-12, "passivity");
 }
-END_TEST
 
 /* ---- the estimators themselves ---- */
 
@@ -139,14 +135,12 @@ static void check_estimators(double late) {
   ck_assert(ethd__sampled_radius(&foaw) == ethd__sampled_radius(&lsq));
 }
 
-START_TEST(test_estimators) { check_estimators(0); }
-END_TEST
+TEST(test_estimators) { check_estimators(0); }
 
-START_TEST(test_late_forces) { check_estimators(0.3 * T); }
-END_TEST
+TEST(test_late_forces) { check_estimators(0.3 * T); }
 
 /* What is late by nearly a tick is a tick of delay; in between it is neither. */
-START_TEST(test_late_is_between) {
+TEST(test_late_is_between) {
   ethd__sampled_loop l = loop_of(ETHD_VELOCITY_LOWPASS, 2000, 40);
   double prompt = ethd__sampled_damping_max(&l);
   l.late = T / 2;
@@ -166,10 +160,9 @@ START_TEST(test_late_is_between) {
   l.damping *= 0.98;
   ck_assert(!ethd__sampled_stable(&l));
 }
-END_TEST
 
 /* Just within what they say it is stable, just beyond it isn't. */
-START_TEST(test_ends) {
+TEST(test_ends) {
   ethd__sampled_loop l = loop_of(ETHD_VELOCITY_LOWPASS, 2500, 45);
   double delay = ethd__sampled_delay_max(&l), cutoff = ethd__sampled_velocity_end(&l);
   ck_assert(delay > T && delay < 20 * T && cutoff > 1 && cutoff < l.p[0]);
@@ -196,12 +189,11 @@ START_TEST(test_ends) {
   l = loop_of(ETHD_VELOCITY_DIFFERENCE, 1000, 0);
   ck_assert(ethd__sampled_delay_max(&l) < 0 && isnan(ethd__sampled_velocity_end(&l)));
 }
-END_TEST
 
 /* ---- the motion of a tick ---- */
 
 /* A mass with friction c under a force f: v = f/c + (v0 - f/c) e^(-c t/m). */
-START_TEST(test_motion_with_friction) {
+TEST(test_motion_with_friction) {
   for (double span = 1e-5; span < 2; span *= 10) {
     ethd__sampled_loop l = {.mass = 0.3, .viscous = 2.5};
     ethd__bounds_motion motion;
@@ -212,7 +204,6 @@ START_TEST(test_motion_with_friction) {
     check_near(s[ETHD_MOTION_X], 0.1 + end * span + (0.7 - end) * (1 - fade) * l.mass / l.viscous, 1e-12, "place");
   }
 }
-END_TEST
 
 /* Two masses without friction: the centre of mass follows the force, the lead swings about where the force holds it,
    with the reduced mass mu. */
@@ -231,19 +222,18 @@ static void check_two_masses(double spring, double damper, double span) {
   ck_assert_double_eq_tol(s[1] + other / l.mass * s[3], centre_v + f * h / l.mass, 1e-12);
 }
 
-START_TEST(test_motion_of_two_masses) {
+TEST(test_motion_of_two_masses) {
   for (double span = 1e-4; span < 0.02; span *= 2) {
     check_two_masses(3489.6, 5.132, span);
     check_two_masses(2e5, 0.5, span);
     check_two_masses(50, 0, span);
   }
 }
-END_TEST
 
 /* ---- friction ---- */
 
 /* A spring without a damper lacks what hold and delay take. */
-START_TEST(test_viscous_needed) {
+TEST(test_viscous_needed) {
   for (int n = 0; n < 4; n++) {
     ethd__sampled_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 500, 0);
     l.delay = n;
@@ -254,17 +244,15 @@ START_TEST(test_viscous_needed) {
   ck_assert(isinf(ethd__sampled_held(1, 0.2, 1.5)));
   check_near(ethd__sampled_held(11, 0.2, 1), 4 * 0.2 / (M_PI * 10), 1e-12, "swing that is held");
 }
-END_TEST
 
 /* A count's kick by hand: F = (K + B/T) delta at once, m dv = F T. */
-START_TEST(test_kick) {
+TEST(test_kick) {
   ethd__sampled_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 2500, 45);
   check_near(ethd__sampled_kick(&l, 40e-6), (2500 + 45 / T) * 40e-6 * T / M, 1e-12, "kick");
   l.motor_mass = 0.01;
   l.spring = 1e4;
   check_near(ethd__sampled_kick(&l, 40e-6), (2500 + 45 / T) * 40e-6 * T / 0.01, 1e-12, "kick of the motor's side");
 }
-END_TEST
 
 /* ---- margins: what a search keeps and what the rows say ---- */
 
@@ -283,7 +271,7 @@ static void check_margins(const ethd__sampled_loop *l, int *kept) {
 }
 
 /* They may differ where both gains at once are asked for, which no row says. */
-START_TEST(test_margins_agree) {
+TEST(test_margins_agree) {
   int agreed = 0, all = 0;
   for (int soft = 0; soft < 2; soft++)
     for (double k = 100; k < 2e4; k *= 2)
@@ -295,30 +283,4 @@ START_TEST(test_margins_agree) {
         check_margins(&l, &agreed);
       }
   ck_assert_int_ge(agreed, 9 * all / 10);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("stability");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 60);
-  tcase_add_test(all, test_boundary);
-  tcase_add_test(all, test_published_numbers);
-  tcase_add_test(all, test_small_gains);
-  tcase_add_test(all, test_trivial_loops);
-  tcase_add_test(all, test_estimators);
-  tcase_add_test(all, test_late_forces);
-  tcase_add_test(all, test_late_is_between);
-  tcase_add_test(all, test_ends);
-  tcase_add_test(all, test_motion_with_friction);
-  tcase_add_test(all, test_motion_of_two_masses);
-  tcase_add_test(all, test_viscous_needed);
-  tcase_add_test(all, test_kick);
-  tcase_add_test(all, test_margins_agree);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

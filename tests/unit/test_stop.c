@@ -1,7 +1,6 @@
 /* The guard's stop on devices of every kind, simulated here apart from the library's own device: two links without
    coupling, whose torques come late by any time, integrated in steps of a twentieth of a period. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "unit/rig.h"
@@ -174,7 +173,7 @@ static void check(const device *d, const ending *e) {
                 d->delay, d->measured, e->left);
 }
 
-START_TEST(test_random_devices) {
+TEST(test_random_devices) {
   seed = 1;
   for (int i = 0; i < DEVICES; i++) {
     device d = random_device();
@@ -182,12 +181,11 @@ START_TEST(test_random_devices) {
     check(&d, &e);
   }
 }
-END_TEST
 
 /* ---- the deadline ---- */
 
 /* A healthy device whose full torque brakes it for far longer than 0.1 to 0.5 s: its last torque ends at the deadline. */
-START_TEST(test_deadline) {
+TEST(test_deadline) {
   seed = 2;
   for (int i = 0; i < 200; i++) {
     device d = random_device();
@@ -201,10 +199,9 @@ START_TEST(test_deadline) {
                   "m %g kg, T %g s, t_d %g s: %g s instead of %g", d.mass, d.period, d.delay, e.time, deadline);
   }
 }
-END_TEST
 
 /* The least stop_time that is accepted is m v / F of a known mass, at create and post. */
-START_TEST(test_least_stop_time) {
+TEST(test_least_stop_time) {
   seed = 3;
   for (int i = 0; i < 200; i++) {
     ethd_setup setup = ethd_setup_default();
@@ -226,7 +223,6 @@ START_TEST(test_least_stop_time) {
     }
   }
 }
-END_TEST
 
 /* ---- the wall of the margin ---- */
 
@@ -258,7 +254,7 @@ static void bounce(const device *d, double v, double margin, double *deepest, do
   ethd_control_destroy(control);
 }
 
-START_TEST(test_margin) {
+TEST(test_margin) {
   seed = 4;
   for (int i = 0; i < 1000; i++) {
     device d = random_device();
@@ -272,17 +268,4 @@ START_TEST(test_margin) {
     ck_assert_msg(deepest <= most && rebound <= 0.55 * v, "m %g kg, T %g s, t_d %g s, %g m/s: %g m deep, out at %g m/s",
                   d.mass, d.period, d.delay, v, deepest, rebound);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("stop");
-  TCase *t = tcase_create("stop");
-  tcase_set_timeout(t, 120);
-  tcase_add_test(t, test_random_devices);
-  tcase_add_test(t, test_deadline);
-  tcase_add_test(t, test_least_stop_time);
-  tcase_add_test(t, test_margin);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -40,7 +40,7 @@ static void torque_of(const ethd_trace *t, double tau[2]) {
 static double bound_of(double delta) { return fabs(delta) * (1 + 1e-9) + 1e-13; }
 
 /* _i: from which to which. At every tick of the tap. */
-START_TEST(test_every_tick_of_a_tap) {
+TEST_LOOP(test_every_tick_of_a_tap, 0, 9) {
   const ethd_transition_law *from = strategies[_i % 3], *to = strategies[_i / 3];
   rig r, stays;
   int moved = 0;
@@ -85,7 +85,6 @@ START_TEST(test_every_tick_of_a_tap) {
   rig_close(&r);
   rig_close(&stays);
 }
-END_TEST
 
 /* ---- ten thousand random ones ---- */
 
@@ -150,7 +149,7 @@ static void copy_without_fade(ethd_control *to, const ethd_control *from) {
   to->state.fade.elapsed = INFINITY;
 }
 
-START_TEST(test_ten_thousand) {
+TEST(test_ten_thousand) {
   static ethd_control plain;
   ethd_scene *scene[4];
   rig r;
@@ -198,10 +197,9 @@ START_TEST(test_ten_thousand) {
   rig_close(&r);
   for (int i = 0; i < 4; i++) ethd_scene_destroy(scene[i]);
 }
-END_TEST
 
 /* The same setup again: no difference at all, ever, of anything that was estimated either. */
-START_TEST(test_nothing_new) {
+TEST(test_nothing_new) {
   rig r, stays;
   rig_open(&r, RIG_WALL);
   rig_open(&stays, RIG_WALL);
@@ -220,12 +218,11 @@ START_TEST(test_nothing_new) {
   rig_close(&r);
   rig_close(&stays);
 }
-END_TEST
 
 /* ---- in closed loop ---- */
 
 /* Simulated taps on plant n, another law every few ticks: the hand feels no bump. */
-START_TEST(test_simulated_taps) {
+TEST(test_simulated_taps) {
   char message[ETHD_MESSAGE_MAX];
   ethd_sim_def def = {
       .arm = {ETHD_ARM_PARALLEL, 0.25, 0.25}, .ring_radius = 0.012, .period = 0.001, .step = 50e-6, .tolerance = 1e-10};
@@ -265,17 +262,4 @@ START_TEST(test_simulated_taps) {
   ck_assert_msg(inside > 500 && swaps > 800, "%d ticks inside, %d swaps", inside, swaps);
   ethd_sim_destroy(sim);
   rig_close(&r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("swap");
-  TCase *t = tcase_create("swap");
-  tcase_add_loop_test(t, test_every_tick_of_a_tap, 0, 9);
-  tcase_add_test(t, test_ten_thousand);
-  tcase_add_test(t, test_nothing_new);
-  tcase_add_test(t, test_simulated_taps);
-  tcase_set_timeout(t, 30);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -13,7 +13,7 @@ static const ethd_trace *swap_to(rig *r, const ethd_transition_law *law, const m
 
 /* Into VO-B inside the wall: a ring at rest keeps the wall that it stands in, a moving one is braked; then one arrow a
    tick as ever. Out of it eps is forgotten and doesn't come back. */
-START_TEST(test_into_offset_and_out) {
+TEST(test_into_offset_and_out) {
   rig r;
   rig_open(&r, RIG_WALL);
   ethd_setup_transition(&r.setup, &ethd_transition_smooth);
@@ -40,7 +40,6 @@ START_TEST(test_into_offset_and_out) {
   ck_assert_int_eq(swap_to(&r, &ethd_transition_offset, &m)->state, ETHD_TRANSPARENT);
   rig_close(&r);
 }
-END_TEST
 
 static ethd_past past;
 
@@ -50,7 +49,7 @@ static void look_back(const double *p, void *state, const ethd_past *was) ETHD_R
 }
 
 /* What a law is told of the contact that it takes over. */
-START_TEST(test_past) {
+TEST(test_past) {
   static ethd_transition_law looking;
   looking = ethd_transition_smooth;
   looking.law.id = "looking";
@@ -74,10 +73,9 @@ START_TEST(test_past) {
   ck_assert(past.offset == 0);
   rig_close(&r);
 }
-END_TEST
 
 /* Other gains for the same law: its state stays. */
-START_TEST(test_same_law_keeps_its_state) {
+TEST(test_same_law_keeps_its_state) {
   rig r;
   rig_open(&r, RIG_WALL);
   rig_start(&r);
@@ -96,7 +94,6 @@ START_TEST(test_same_law_keeps_its_state) {
   ck_assert(t->state == ETHD_VO && fabs(t->eps - 0.002) < 1e-15 && fabs(t->fe[0] - 1) < 1e-10);
   rig_close(&r);
 }
-END_TEST
 
 /* A force that grows with every step of the contact, to see whose state is whose. */
 static ethd_status growing_step(const double *p, void *state, double gap, double speed, int entering,
@@ -110,7 +107,7 @@ static ethd_status growing_step(const double *p, void *state, double gap, double
   {{sizeof(ethd_contact_law), ETHD_ABI, ETHD_CONTACT, 8, "growing", "counts", NULL, 0, NULL, NULL}, growing_step}
 static const ethd_contact_law growing = GROWING, growing_too = GROWING;
 
-START_TEST(test_state_of_other_laws) {
+TEST(test_state_of_other_laws) {
   rig r;
   rig_open(&r, RIG_WALL);
   ethd_setup_transition(&r.setup, &ethd_transition_smooth);
@@ -131,10 +128,9 @@ START_TEST(test_state_of_other_laws) {
   ck_assert_double_eq_tol(rig_step(&r, &m)->fe[0], 1, 1e-12);
   rig_close(&r);
 }
-END_TEST
 
 /* A new estimator goes on from where the old one was: at a steady speed nothing is to be seen. */
-START_TEST(test_estimators_go_on) {
+TEST(test_estimators_go_on) {
   rig r;
   rig_open(&r, NULL);
   r.setup.tracking_p[0] = r.setup.tracking_p[1] = 0; /* no torque: the motion is scripted */
@@ -164,10 +160,9 @@ START_TEST(test_estimators_go_on) {
   }
   rig_close(&r);
 }
-END_TEST
 
 /* A thin wall that the ring has pulled itself through keeps its side, out of reach as well. */
-START_TEST(test_thin_wall_keeps_its_side) {
+TEST(test_thin_wall_keeps_its_side) {
   rig r;
   rig_open(&r, "segment 0.238 0.1 0.238 0.4\n");
   ethd_setup_transition(&r.setup, &ethd_transition_smooth);
@@ -182,10 +177,9 @@ START_TEST(test_thin_wall_keeps_its_side) {
   ck_assert_double_eq_tol(t->fd[0], 10, 1e-10); /* back to where it came from */
   rig_close(&r);
 }
-END_TEST
 
 /* A soft start is a fade like any other. */
-START_TEST(test_swap_in_a_soft_start) {
+TEST(test_swap_in_a_soft_start) {
   rig r;
   rig_open(&r, RIG_WALL);
   rig_start(&r);
@@ -203,19 +197,4 @@ START_TEST(test_swap_in_a_soft_start) {
   rig_step(&r, &m);
   ck_assert_mem_eq(told.torque, r.trace.tau, sizeof told.torque);
   rig_close(&r);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("swap_laws");
-  TCase *t = tcase_create("swap_laws");
-  tcase_add_test(t, test_into_offset_and_out);
-  tcase_add_test(t, test_past);
-  tcase_add_test(t, test_same_law_keeps_its_state);
-  tcase_add_test(t, test_state_of_other_laws);
-  tcase_add_test(t, test_estimators_go_on);
-  tcase_add_test(t, test_thin_wall_keeps_its_side);
-  tcase_add_test(t, test_swap_in_a_soft_start);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -19,7 +19,7 @@ static void expect_rows(const ethd_param *rows, uint32_t count, const char *said
   ck_assert_str_eq(what, said);
 }
 
-START_TEST(test_numbers) {
+TEST(test_numbers) {
   static const struct {
     ethd_param row;
     const char *said;
@@ -52,7 +52,6 @@ START_TEST(test_numbers) {
   ck_assert_int_eq(ethd__table_fault(&good, 1, what), ETHD_OK);
   ck_assert_int_eq(ethd__table_fault(NULL, 0, what), ETHD_OK);
 }
-END_TEST
 
 /* ---- drivers ---- */
 
@@ -92,7 +91,7 @@ static void expect_driver(const ethd_driver *driver, ethd_status status, const c
     expect_driver(&d, status, said); \
   } while (0)
 
-START_TEST(test_drivers) {
+TEST(test_drivers) {
   static const char *many[70];
   static const char *const odd[] = {"port", "Port", NULL}, *const words[] = {"port", NULL};
   for (int i = 0; i < 66; i++) many[i] = "port";
@@ -124,10 +123,9 @@ START_TEST(test_drivers) {
   REFUSED(ETHD_E_ARGUMENT, "sound has units of I/O and no service", d.service = NULL);
   REFUSED(ETHD_E_ARGUMENT, "sound has a service and no units", d.units = NULL);
 }
-END_TEST
 
 /* A table's size is all that may be read of it. */
-START_TEST(test_sizes) {
+TEST(test_sizes) {
   char said[ETHD_MESSAGE_MAX];
   const uint32_t sizes[] = {0, ETHD_DRIVER_MIN - 1, sizeof sound + 1};
   for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
@@ -135,15 +133,4 @@ START_TEST(test_sizes) {
              (size_t)ETHD_DRIVER_MIN, sizeof sound);
     REFUSED(ETHD_E_SIZE, said, d.size = sizes[i]);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("tables");
-  TCase *t = tcase_create("tables");
-  tcase_add_test(t, test_numbers);
-  tcase_add_test(t, test_drivers);
-  tcase_add_test(t, test_sizes);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

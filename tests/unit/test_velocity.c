@@ -1,13 +1,12 @@
 /* Each estimator against a second derivation in long double, and all of them side by side. */
 #include "ethd/estimate.h"
 
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "draw.h"
+#include "unit/suite.h"
 
 #define T 1e-3
 #define PI_L 3.14159265358979323846264338327950288L
@@ -40,7 +39,7 @@ static void make_path(void) {
 
 /* ---- single methods ---- */
 
-START_TEST(test_lowpass_to_the_letter) {
+TEST(test_lowpass_to_the_letter) {
   const double cutoff = 133.4;
   ethd_velocity v = prepared(ETHD_VELOCITY_LOWPASS, &cutoff);
   ethd_velocity_state s;
@@ -61,16 +60,14 @@ START_TEST(test_lowpass_to_the_letter) {
     qd = out;
   }
 }
-END_TEST
 
-START_TEST(test_difference) {
+TEST(test_difference) {
   ethd_velocity v = prepared(ETHD_VELOCITY_DIFFERENCE, NULL);
   ethd_velocity_state s;
   memset(&s, 0, sizeof s);
   for (int k = 0; k < TICKS; k++)
     ck_assert(ethd_velocity_step(&v, &s, q[k], 0, dt[k]) == (k ? (q[k] - q[k - 1]) / dt[k] : 0));
 }
-END_TEST
 
 /* Normal equations of y = b0 + b1 t over samples k - n + 1 to k, by Cramer's rule. */
 static long double line_slope(int k, int n) {
@@ -83,7 +80,7 @@ static long double line_slope(int k, int n) {
   return (s1 * sty - st * sy) / (s1 * stt - st * st);
 }
 
-START_TEST(test_lsq_is_the_line) {
+TEST_LOOP(test_lsq_is_the_line, 0, 5) {
   const double windows[] = {2, 3, 8, 31, 32};
   double window = windows[_i];
   ethd_velocity v = prepared(ETHD_VELOCITY_LSQ, &window);
@@ -95,7 +92,6 @@ START_TEST(test_lsq_is_the_line) {
     ck_assert_double_le(fabs((double)(ethd_velocity_step(&v, &s, q[k], 0, dt[k]) - line_slope(k, n))), 1e-11);
   }
 }
-END_TEST
 
 /* Does the line through samples k - n + 1 and k pass within noise of those between? */
 static int passes(int k, int n, double noise) {
@@ -110,7 +106,7 @@ static int passes(int k, int n, double noise) {
   return 1;
 }
 
-START_TEST(test_foaw_window) {
+TEST(test_foaw_window) {
   const double p[] = {24, 160e-6};
   ethd_velocity v = prepared(ETHD_VELOCITY_FOAW, p);
   ethd_velocity_state s;
@@ -126,10 +122,9 @@ START_TEST(test_foaw_window) {
   for (int n = 0; n <= W; n++) kinds += seen[n] > 0;
   ck_assert_int_gt(kinds, 8);
 }
-END_TEST
 
 /* x+ = F x + G u, P+ = F P F^T + Q; K = P H^T / (H P H^T + R), P+ = (I - K H) P, all as matrices. */
-START_TEST(test_kalman_as_matrices) {
+TEST(test_kalman_as_matrices) {
   const double p[] = {46e-6, 50, 0.0073};
   ethd_velocity v = prepared(ETHD_VELOCITY_KALMAN, p);
   ethd_velocity_state s;
@@ -155,11 +150,10 @@ START_TEST(test_kalman_as_matrices) {
     ck_assert_double_le(fabs((double)(s.cov[2] / c[1][1] - 1)), 1e-9);
   }
 }
-END_TEST
 
 /* ---- all methods ---- */
 
-START_TEST(test_tables) {
+TEST(test_tables) {
   ethd_error error;
   for (int m = 0; m < ETHD_VELOCITY_COUNT; m++) {
     const ethd_method *method = &ethd_velocity_methods[m];
@@ -168,10 +162,9 @@ START_TEST(test_tables) {
   }
   ck_assert_str_eq(ethd_velocity_methods[ETHD_VELOCITY_FOAW].id, "foaw");
 }
-END_TEST
 
 /* The same bytes, whatever the memory held before. */
-START_TEST(test_prepared_whole) {
+TEST_LOOP(test_prepared_whole, 0, ETHD_VELOCITY_COUNT) {
   const ethd_method *m = &ethd_velocity_methods[_i];
   double p[ETHD_PARAMS_MAX];
   ethd_velocity a, b;
@@ -182,10 +175,9 @@ START_TEST(test_prepared_whole) {
   ck_assert_int_eq(ethd_velocity_prepare((ethd_velocity_method)_i, p, T, &b, NULL), ETHD_OK);
   ck_assert_mem_eq(&a, &b, sizeof a);
 }
-END_TEST
 
 /* The first call gives what the state says, the second what two samples tell. */
-START_TEST(test_start) {
+TEST_LOOP(test_start, 0, ETHD_VELOCITY_COUNT) {
   ethd_velocity v = prepared((ethd_velocity_method)_i, NULL);
   ethd_velocity_state s;
   memset(&s, 0, sizeof s);
@@ -197,10 +189,9 @@ START_TEST(test_start) {
   for (int k = 1; k < 4; k++) next = ethd_velocity_step(&v, &s, 1 + k * 0.75 * T, 0, T);
   ck_assert_double_eq_tol(next, 0.75, 1e-9);
 }
-END_TEST
 
 /* A constant speed is found exactly, however far away and with ticks missed. */
-START_TEST(test_constant_speed) {
+TEST_LOOP(test_constant_speed, 0, ETHD_VELOCITY_COUNT) {
   ethd_velocity v = prepared((ethd_velocity_method)_i, NULL);
   ethd_velocity_state s;
   double out = 0, now = 0;
@@ -211,10 +202,9 @@ START_TEST(test_constant_speed) {
   }
   ck_assert_double_eq_tol(out, -0.3125, 1e-8);
 }
-END_TEST
 
 /* Slow acceleration a: the estimate stands a lag behind. With its input known, kalman has none. */
-START_TEST(test_lag) {
+TEST_LOOP(test_lag, 0, ETHD_VELOCITY_COUNT) {
   ethd_velocity v = prepared((ethd_velocity_method)_i, NULL);
   const double a = 1e-2;
   for (int known = 0; known < 2; known++) {
@@ -230,9 +220,8 @@ START_TEST(test_lag) {
     ck_assert_double_eq_tol(lag, expected, 1e-8);
   }
 }
-END_TEST
 
-START_TEST(test_not_finite_stays) {
+TEST_LOOP(test_not_finite_stays, 0, ETHD_VELOCITY_COUNT) {
   ethd_velocity v = prepared((ethd_velocity_method)_i, NULL);
   ethd_velocity_state s;
   memset(&s, 0, sizeof s);
@@ -241,7 +230,6 @@ START_TEST(test_not_finite_stays) {
   memset(&s, 0, sizeof s);
   ck_assert(ethd_velocity_step(&v, &s, 1, 0, T) == 0);
 }
-END_TEST
 
 /* Lag against noise: 48000 counts a turn (ratio 12) at 0.25 m, error rms in mm/s. */
 typedef struct figure {
@@ -274,7 +262,7 @@ static figure measure(ethd_velocity_method method, const double *p) {
   return (figure){sqrt(f.steady), sqrt(f.braking)};
 }
 
-START_TEST(test_lag_against_noise) {
+TEST(test_lag_against_noise) {
   const double fifty = 50, wide[] = {32, 132e-6}, count[] = {16, 132e-6}, kalman[] = {38e-6, 50, 0.0073};
   figure difference = measure(ETHD_VELOCITY_DIFFERENCE, NULL), slow = measure(ETHD_VELOCITY_LOWPASS, &fifty);
   figure lowpass = measure(ETHD_VELOCITY_LOWPASS, NULL), lsq = measure(ETHD_VELOCITY_LSQ, NULL);
@@ -297,9 +285,8 @@ START_TEST(test_lag_against_noise) {
   ck_assert(lowpass.braking < slow.braking && slow.braking < lsq.braking);
   ck_assert_double_eq_tol(foaw.braking, foaw32.braking, 0.5);
 }
-END_TEST
 
-START_TEST(test_refusals) {
+TEST(test_refusals) {
   static const struct {
     int method;
     double p0, p1, period;
@@ -332,31 +319,5 @@ START_TEST(test_refusals) {
     ck_assert_int_eq(ethd_velocity_prepare((ethd_velocity_method)bad[i].method, p, bad[i].period, &v, NULL), status);
   }
 }
-END_TEST
 
-int main(void) {
-  Suite *suite = suite_create("velocity");
-  TCase *of_one = tcase_create("methods"), *of_all = tcase_create("all");
-  tcase_add_unchecked_fixture(of_one, make_path, NULL);
-  tcase_add_unchecked_fixture(of_all, make_path, NULL);
-  tcase_add_test(of_one, test_lowpass_to_the_letter);
-  tcase_add_test(of_one, test_difference);
-  tcase_add_loop_test(of_one, test_lsq_is_the_line, 0, 5);
-  tcase_add_test(of_one, test_foaw_window);
-  tcase_add_test(of_one, test_kalman_as_matrices);
-  tcase_add_test(of_all, test_tables);
-  tcase_add_loop_test(of_all, test_prepared_whole, 0, ETHD_VELOCITY_COUNT);
-  tcase_add_loop_test(of_all, test_start, 0, ETHD_VELOCITY_COUNT);
-  tcase_add_loop_test(of_all, test_constant_speed, 0, ETHD_VELOCITY_COUNT);
-  tcase_add_loop_test(of_all, test_lag, 0, ETHD_VELOCITY_COUNT);
-  tcase_add_loop_test(of_all, test_not_finite_stays, 0, ETHD_VELOCITY_COUNT);
-  tcase_add_test(of_all, test_lag_against_noise);
-  tcase_add_test(of_all, test_refusals);
-  suite_add_tcase(suite, of_one);
-  suite_add_tcase(suite, of_all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
-}
+FIXTURE(make_path, NULL)

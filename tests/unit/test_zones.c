@@ -28,7 +28,7 @@ static ethd_vec draw_centre(void) {
   return c;
 }
 
-START_TEST(test_distance) {
+TEST_LOOP(test_distance, 8, 17) {
   ethd__zones z;
   srand(1);
   ethd__zones_prepare((uint32_t)_i, 3.5e-3, R, F, 0, &z);
@@ -39,7 +39,6 @@ START_TEST(test_distance) {
     ck_assert((isinf(d) && isinf(m)) || fabs(d - m) < 1e-5);
   }
 }
-END_TEST
 
 static uint32_t lit_of(const ethd__zones *z, ethd_vec c) {
   uint32_t lit = 0;
@@ -48,7 +47,7 @@ static uint32_t lit_of(const ethd__zones *z, ethd_vec c) {
 }
 
 /* Centres anywhere: the mean error is 0, and its sd what the sensor says, by number of lit barriers. */
-START_TEST(test_table) {
+TEST_LOOP(test_table, 8, 17) {
   ethd__zones z;
   double n[17] = {0}, along[17] = {0}, square[17] = {0}, told[17] = {0};
   srand(2);
@@ -80,11 +79,10 @@ START_TEST(test_table) {
   ck_assert_double_ge(z.noise[0], (R - F - z.reach) / 2 * 0.99);
   ck_assert_double_le(z.noise[0], (R - F - z.reach) / 2 * 1.35);
 }
-END_TEST
 
 /* Every pattern there is: rows of neighbours that a finger can light give a centre within the ring, toward their
    middle; all else is refused. */
-START_TEST(test_patterns) {
+TEST_LOOP(test_patterns, 8, 17) {
   ethd__zones z;
   ethd__zones_prepare((uint32_t)_i, 3.5e-3, R, F, 1e-4, &z);
   uint32_t good = 0, rows = 0;
@@ -110,9 +108,8 @@ START_TEST(test_patterns) {
   double noise;
   ck_assert(!ethd__zones_centre(&z, UINT32_C(1) << _i, &c, &noise)); /* a barrier that isn't there */
 }
-END_TEST
 
-START_TEST(test_nail) {
+TEST(test_nail) {
   const ethd__nail nail = {{0, 1}, 5e-3, 10e-3};
   const double bad[] = {-1e-9, 10.001e-3, (double)NAN, (double)INFINITY};
   ethd_vec c = {7, 7};
@@ -120,17 +117,4 @@ START_TEST(test_nail) {
   ck_assert(c.x == 0 && fabs(c.y - 1e-3) < 1e-18);
   ck_assert_double_eq_tol(ethd__nail_distance(&nail, (ethd_vec){3e-3, 1e-3}), 4e-3, 1e-18);
   for (int i = 0; i < 4; i++) ck_assert(!ethd__nail_centre(&nail, bad[i], &c));
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("zones");
-  TCase *tc = tcase_create("zones");
-  tcase_set_timeout(tc, 60);
-  tcase_add_loop_test(tc, test_distance, 8, 17);
-  tcase_add_loop_test(tc, test_table, 8, 17);
-  tcase_add_loop_test(tc, test_patterns, 8, 17);
-  tcase_add_test(tc, test_nail);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }
