@@ -99,7 +99,7 @@ static ethd_config *load(const ethd__listing *what) {
   ethd_config *config;
   if (ethd_config_load(NULL, &config, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   for (int i = 0; i < what->plugin_count; i++) {
-    ethd__config_key key = {NULL, 0, "plugins", "file", what->plugins[i], message};
+    ethd__key key = {NULL, 0, "plugins", "file", what->plugins[i], message};
     ethd_status status = ethd__config_plugin((ethd__config *)config, &key);
     if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
   }

@@ -7,7 +7,7 @@
 
 #include "proximity_ring/calibration.h"
 #include "text/error_text.h"
-#include "text/ini.h"
+#include "text/key.h"
 #include "text/text.h"
 
 typedef struct calibration_source {
@@ -20,8 +20,7 @@ typedef struct calibration_source {
 /* ---- numbers ---- */
 
 typedef struct sensor_key {
-  const char *key;
-  double min, max;
+  ethd_param param;
   size_t offset;
   ethd__level from, to; /* bits of the levels at which a sensor may have such a key of its own */
 } sensor_key;
@@ -29,34 +28,29 @@ typedef struct sensor_key {
 #define AT(member) offsetof(ethd__sensor, member)
 
 static const sensor_key rows[] = {
-    {"a", 1e-9, 1e9, AT(a), ETHD__LEVEL_GAIN, ETHD__LEVEL_LAW},
-    {"p", 0.5, 8, AT(p), ETHD__LEVEL_LAW, ETHD__LEVEL_LAW},
-    {"d0", 0, 0.05, AT(d0), ETHD__LEVEL_GAIN, ETHD__LEVEL_LAW},
-    {"dark", 0, 65534, AT(dark), ETHD__LEVEL_NONE, ETHD__LEVEL_TABLE},
-    {"residual", 0, 0.1, AT(residual), ETHD__LEVEL_NONE, ETHD__LEVEL_TABLE},
+    {{"a", "counts m^p", 1e-9, 1e9, 0, "factor of the law"}, AT(a), ETHD__LEVEL_GAIN, ETHD__LEVEL_LAW},
+    {{"p", "1", 0.5, 8, 0, "power of the law"}, AT(p), ETHD__LEVEL_LAW, ETHD__LEVEL_LAW},
+    {{"d0", "m", 0, 0.05, 0, "added to a distance"}, AT(d0), ETHD__LEVEL_GAIN, ETHD__LEVEL_LAW},
+    {{"dark", "1", 0, 65534, 0, "counts without a finger"}, AT(dark), ETHD__LEVEL_NONE, ETHD__LEVEL_TABLE},
+    {{"residual", "m", 0, 0.1, 0, "rms"}, AT(residual), ETHD__LEVEL_NONE, ETHD__LEVEL_TABLE},
 };
 
 #define ROWS (sizeof rows / sizeof *rows)
 
 static ethd_status refuse(const calibration_source *r, const ethd_ini_key *k, ethd_status status, const char *allowed) {
-  char quote[ETHD_QUOTE_MAX];
-  return ethd__say(r->message, status, "%s:%d: %s.%s: found %s, %s is allowed", r->name, k->line, k->section, k->key,
-                   ethd__quote(k->value, strlen(k->value), quote), allowed);
+  const ethd__key key = ethd__key_of(r->name, k, r->message);
+  return ethd__key_found(&key, status, allowed);
 }
 
 static ethd_status unknown(const calibration_source *r, const ethd_ini_key *k, const char *allowed) {
-  return ethd__say(r->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: unknown key at level %s; %s are allowed", r->name,
-                   k->line, k->section, k->key, ethd__level_names[r->out->level], allowed);
+  const ethd__key key = ethd__key_of(r->name, k, r->message);
+  return ethd__key_refuse(&key, ETHD_E_UNKNOWN, "unknown key at level %s; %s are allowed",
+                          ethd__level_names[r->out->level], allowed);
 }
 
-static ethd_status number(const calibration_source *r, const ethd_ini_key *k, double min, double max, double *out) {
-  char allowed[64];
-  double value;
-  snprintf(allowed, sizeof allowed, "%.10g to %.10g", min, max);
-  if (!ethd__number(k->value, strlen(k->value), &value)) return refuse(r, k, ETHD_E_SYNTAX, "a decimal number");
-  if (!(value >= min && value <= max)) return refuse(r, k, ETHD_E_RANGE, allowed);
-  *out = value;
-  return ETHD_OK;
+static ethd_status number(const calibration_source *r, const ethd_ini_key *k, const ethd_param *row, double *out) {
+  const ethd__key key = ethd__key_of(r->name, k, r->message);
+  return ethd__key_value(&key, row, false, out);
 }
 
 static ethd_status word(const calibration_source *r, const ethd_ini_key *k, char out[ETHD__SERIAL_MAX]) {
@@ -67,7 +61,7 @@ static ethd_status word(const calibration_source *r, const ethd_ini_key *k, char
 
 static const sensor_key *find(const char *key) {
   for (size_t i = 0; i < ROWS; i++)
-    if (!strcmp(rows[i].key, key)) return &rows[i];
+    if (!strcmp(rows[i].param.name, key)) return &rows[i];
   return NULL;
 }
 
@@ -88,7 +82,7 @@ static ethd_status read_general(const calibration_source *r, const ethd_ini_key 
   if (!strcmp(k->key, "level")) return ETHD_OK; /* has been read */
   if (!strcmp(k->key, "date")) return word(r, k, r->out->date);
   if (!strcmp(k->key, "serial")) return word(r, k, r->out->serial);
-  if (!strcmp(k->key, "residual")) return number(r, k, 0, 0.1, &r->out->residual);
+  if (!strcmp(k->key, "residual")) return number(r, k, &find("residual")->param, &r->out->residual);
   return unknown(r, k, "level, date, serial, residual");
 }
 
@@ -99,7 +93,7 @@ static ethd_status read_law(const calibration_source *r, const ethd_ini_key *k) 
   if (r->out->level == ETHD__LEVEL_NONE || r->out->level == ETHD__LEVEL_TABLE)
     return ethd__say(r->message, ETHD_E_ARGUMENT, "%s:%d: [law]: level %s has none", r->name, k->line,
                      ethd__level_names[r->out->level]);
-  ethd_status status = number(r, k, which->min, which->max, &value);
+  ethd_status status = number(r, k, &which->param, &value);
   for (int i = 0; i < ETHD_RAYS && !status; i++) *field(&r->out->sensors[i], which) = value;
   return status;
 }
@@ -131,7 +125,7 @@ static ethd_status read_sensor(const calibration_source *r, const ethd_ini_key *
   const sensor_key *which = find(k->key);
   if (!strcmp(k->key, "serial")) return word(r, k, s->serial);
   if (which && which->from <= r->out->level && which->to >= r->out->level)
-    return number(r, k, which->min, which->max, field(s, which));
+    return number(r, k, &which->param, field(s, which));
   if (!which && r->out->level == ETHD__LEVEL_TABLE) return read_point(r, k, s);
   return unknown(r, k, allowed[r->out->level]);
 }
@@ -230,7 +224,7 @@ static void put_sensor(FILE *f, const ethd__calibration *c, int sensor) {
   fprintf(f, "\n[sensor %d]\n", sensor);
   put_word(f, "serial", s.serial);
   for (size_t i = 0; i < ROWS; i++)
-    if (rows[i].from <= c->level && rows[i].to >= c->level) put(f, rows[i].key, *field(&s, &rows[i]));
+    if (rows[i].from <= c->level && rows[i].to >= c->level) put(f, rows[i].param.name, *field(&s, &rows[i]));
   for (uint32_t i = 0; i < s.points && c->level == ETHD__LEVEL_TABLE; i++)
     fprintf(f, "point%u = %.17g %.17g\n", i, s.above[i], s.at[i]);
 }
@@ -250,7 +244,7 @@ ethd_status ethd__calibration_save(const ethd__calibration *c, const char *path,
     ethd__sensor common = c->sensors[0];
     fprintf(to.file, "\n[law]\n");
     for (size_t i = 0; i < ROWS; i++)
-      if (rows[i].from != ETHD__LEVEL_NONE) put(to.file, rows[i].key, *field(&common, &rows[i]));
+      if (rows[i].from != ETHD__LEVEL_NONE) put(to.file, rows[i].param.name, *field(&common, &rows[i]));
   }
   for (int k = 0; k < ETHD_RAYS; k++) put_sensor(to.file, c, k);
   return ethd_replace_commit(&to, message);

@@ -6,6 +6,7 @@
 #include "ethd/param.h"
 #include "servo/map_parts.h"
 #include "text/error_text.h"
+#include "text/key.h"
 #include "text/text.h"
 
 typedef enum { NUMBER, WHOLE, CHOICE } key_kind;
@@ -117,14 +118,6 @@ static const map_key keys[] = {
 
 /* ---- one value ---- */
 
-static ethd_status refuse_range(const ethd__servo_source *s, const ethd_ini_key *key, const map_key *r) {
-  char allowed[ETHD_MESSAGE_MAX];
-  const char *unit = strcmp(r->param.unit, "1") ? r->param.unit : "";
-  ethd__say(allowed, ETHD_OK, "%s%.10g to %.10g%s%s", r->kind == WHOLE ? "a whole number from " : "", r->param.min,
-            r->param.max, *unit ? " " : "", unit);
-  return ethd__servo_refuse(s, key, allowed);
-}
-
 static void put(const map_key *r, double value, void *base) {
   char *at = (char *)base + r->offset;
   switch (r->kind) {
@@ -135,14 +128,14 @@ static void put(const map_key *r, double value, void *base) {
 }
 
 static ethd_status set(const ethd__servo_source *s, const map_key *r, const ethd_ini_key *key, void *base) {
+  const ethd__key found = ethd__key_of(s->name, key, s->message);
   double value;
-  if (r->kind == CHOICE) {
-    value = ethd_param_word(&r->param, key->value);
-    if (value < 0) return ethd__servo_refuse(s, key, r->param.unit);
+  if (r->kind == WHOLE) {
+    if (!ethd__servo_whole(key->value, &value) || !ethd__is_within(value, r->param.min, r->param.max))
+      return ethd__key_range(&found, &r->param, true);
   } else {
-    bool is_number =
-        r->kind == WHOLE ? ethd__servo_whole(key->value, &value) : ethd__number(key->value, strlen(key->value), &value);
-    if (!is_number || !(value >= r->param.min && value <= r->param.max)) return refuse_range(s, key, r);
+    ethd_status status = ethd__key_value(&found, &r->param, false, &value);
+    if (status) return status;
   }
   put(r, value, base);
   return ETHD_OK;

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "servo/map_parts.h"
-#include "text/error_text.h"
+#include "text/key.h"
 #include "text/text.h"
 
 #define WORD_MAX 4294967295.0
@@ -64,7 +64,6 @@ bool ethd__servo_whole(const char *text, double *out) {
 }
 
 ethd_status ethd__servo_refuse(const ethd__servo_source *s, const ethd_ini_key *key, const char *allowed) {
-  char quote[ETHD_QUOTE_MAX];
-  return ethd__say(s->message, ETHD_E_RANGE, "%s:%d: %s.%s: found %s, %s is allowed", s->name, key->line, key->section,
-                   key->key, ethd__quote(key->value, strlen(key->value), quote), allowed);
+  const ethd__key found = ethd__key_of(s->name, key, s->message);
+  return ethd__key_found(&found, ETHD_E_RANGE, allowed);
 }

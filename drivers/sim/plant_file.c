@@ -7,36 +7,10 @@
 
 #include "sim/plant.h"
 #include "text/error_text.h"
-#include "text/ini.h"
+#include "text/key.h"
 #include "text/text.h"
 
 #define BYTES_MAX ((size_t)1 << 16)
-
-static ethd_status refuse(const char *path, const ethd_ini_key *key, const char *allowed, char *message) {
-  char quote[ETHD_QUOTE_MAX];
-  return ethd__say(message, ETHD_E_RANGE, "%s:%d: %s.%s: found %s, %s is allowed", path, key->line, key->section,
-                   key->key, ethd__quote(key->value, strlen(key->value), quote), allowed);
-}
-
-static ethd_status set_choice(const char *path, const ethd__plant_row *row, const ethd_ini_key *key, void *out,
-                              char *message) {
-  int32_t word = ethd_param_word(&row->param, key->value);
-  if (word < 0) return refuse(path, key, row->param.unit, message);
-  memcpy(out, &word, sizeof word);
-  return ETHD_OK;
-}
-
-static ethd_status set_number(const char *path, const ethd__plant_row *row, const ethd_ini_key *key, void *out,
-                              char *message) {
-  const ethd_param *p = &row->param;
-  double value;
-  char allowed[ETHD_MESSAGE_MAX];
-  ethd__say(allowed, ETHD_OK, "%.10g to %.10g %s", p->min, p->max, p->unit);
-  if (!ethd__number(key->value, strlen(key->value), &value) || !ethd__is_within(value, p->min, p->max))
-    return refuse(path, key, allowed, message);
-  memcpy(out, &value, sizeof value);
-  return ETHD_OK;
-}
 
 static ethd_status set(const char *path, const ethd__plant_row *row, const ethd_ini *ini, ethd_plant *out,
                        char *message) {
@@ -45,8 +19,15 @@ static ethd_status set(const char *path, const ethd__plant_row *row, const ethd_
   if (!key)
     return ethd__say(message, ETHD_E_UNKNOWN, "%s: %s.%s is missing, a plant file needs every key", path, row->section,
                      row->param.name);
-  if (strchr(row->param.unit, '|')) return set_choice(path, row, key, at, message);
-  return set_number(path, row, key, at, message);
+  const ethd__key found = ethd__key_of(path, key, message);
+  double value;
+  ethd_status status = ethd__key_value(&found, &row->param, false, &value);
+  if (status) return status;
+  if (ethd_param_words(&row->param))
+    memcpy(at, &(int32_t){(int32_t)value}, sizeof(int32_t));
+  else
+    memcpy(at, &value, sizeof value);
+  return ETHD_OK;
 }
 
 static bool is_known(const ethd_ini_key *key) {

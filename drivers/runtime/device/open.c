@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "device/driver_file.h"
+#include "device/settings.h"
 #include "device/stack.h"
 #include "inject/inject.h"
 #include "text/error_text.h"
@@ -214,14 +215,13 @@ static ethd_status open_one(ethd__stack *s, uint32_t i, const ethd_device_def *d
 }
 
 static ethd_status read_hang_time(ethd__stack *s, const ethd_device_def *def, char *message) {
-  char quote[ETHD_QUOTE_MAX];
-  double value = HANG_TIME_DEFAULT;
+  static const ethd_param row = {HANG_TIME, "s", 1, 3600, HANG_TIME_DEFAULT, "for a driver that doesn't return"};
+  double value = row.def;
   const ethd_setting *own = find_common(def, HANG_TIME);
-  if (own && (!ethd__number(own->value, strlen(own->value), &value) || !ethd__is_within(value, 1, 3600)))
-    return ethd__say(message, ETHD_E_RANGE, "%s:%d: device.%s: found %s, 1 to 3600 s is allowed", file_of(def),
-                     own->line, own->key, ethd__quote(own->value, strlen(own->value), quote));
+  const ethd__key key = own ? ethd__setting_key(def, own, message) : (ethd__key){0};
+  ethd_status status = own ? ethd__key_value(&key, &row, false, &value) : ETHD_OK;
   s->hang_time = (unsigned)value;
-  return ETHD_OK;
+  return status;
 }
 
 /* Asks driver i, prepared and not opened, which joints it will measure. */

@@ -3,6 +3,10 @@
 #define ETHD__DEVICE_SETTINGS_H
 
 #include "ethd/driver.h"
+#include "text/key.h"
+
+/* A setting as a key of [device]. */
+ethd__key ethd__setting_key(const ethd_device_def *def, const ethd_setting *s, char message[ETHD_MESSAGE_MAX]);
 
 /* Refuses a key that the configuration has: "file:line: device.key: found X, `allowed` is allowed". [main] */
 ETHD_MUST_CHECK ethd_status ethd__setting_refuse(const ethd_device_def *def, const char *key, const char *allowed,

@@ -39,7 +39,7 @@ static ethd_status parse_scene(ethd__config *whole, size_t length, char message[
   return status;
 }
 
-ethd_status ethd__config_scene(ethd__config *whole, const ethd__config_key *key) {
+ethd_status ethd__config_scene(ethd__config *whole, const ethd__key *key) {
   ethd_config *c = &whole->config;
   char what[ETHD_MESSAGE_MAX];
   size_t length;
@@ -119,7 +119,7 @@ static ethd_status read_keys(const config_reading *r) {
   for (int pass = 0; pass < ETHD__PASSES; pass++)
     for (uint32_t i = 0; !status && i < ini->count; i++) {
       const ethd_ini_key *k = &ini->keys[i];
-      const ethd__config_key key = {r->name, k->line, k->section, k->key, k->value, r->message};
+      const ethd__key key = {r->name, k->line, k->section, k->key, k->value, r->message};
       status = ethd__config_read(r->whole, &key, (ethd__pass)pass);
     }
   if (!status) status = check_setup(r);

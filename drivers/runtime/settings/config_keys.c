@@ -1,5 +1,4 @@
 #include <math.h>
-#include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,24 +6,6 @@
 #include "settings/config_parts.h"
 #include "text/error_text.h"
 #include "text/text.h"
-
-/* ---- refusals ---- */
-
-ethd_status ethd__key_refuse(const ethd__config_key *key, ethd_status status, const char *format, ...) {
-  char what[ETHD_MESSAGE_MAX];
-  va_list args;
-  va_start(args, format);
-  ethd__say_all(what, format, args);
-  va_end(args);
-  if (!key->file) return ethd__say(key->message, status, "%s.%s: %s", key->section, key->key, what);
-  return ethd__say(key->message, status, "%s:%d: %s.%s: %s", key->file, key->line, key->section, key->key, what);
-}
-
-ethd_status ethd__key_found(const ethd__config_key *key, ethd_status status, const char *allowed) {
-  char quote[ETHD_QUOTE_MAX];
-  return ethd__key_refuse(key, status, "found %s, %s is allowed", ethd__quote(key->value, strlen(key->value), quote),
-                          allowed);
-}
 
 /* ---- numbers ---- */
 
@@ -35,7 +16,7 @@ int ethd__config_limit(const char *section, const char *key) {
 }
 
 /* Reads one number, or as many as the key holds, or the index of a word. */
-static ethd_status read_values(const ethd_setup_key *row, const ethd__config_key *key, double values[ETHD_RAYS]) {
+static ethd_status read_values(const ethd_setup_key *row, const ethd__key *key, double values[ETHD_RAYS]) {
   const char *allowed = row->count == 1 ? "a decimal number" : row->param.brief, *p = key->value;
   if (ethd_param_words(&row->param)) {
     values[0] = ethd_param_word(&row->param, key->value);
@@ -49,7 +30,7 @@ static ethd_status read_values(const ethd_setup_key *row, const ethd__config_key
   return p[strspn(p, " \t")] ? ethd__key_found(key, ETHD_E_SYNTAX, allowed) : ETHD_OK;
 }
 
-static ethd_status set_values(const ethd_setup_key *row, const ethd__config_key *key, const double *values,
+static ethd_status set_values(const ethd_setup_key *row, const ethd__key *key, const double *values,
                               ethd_setup *setup) {
   char name[96];
   for (uint32_t i = 0; i < row->count; i++) {
@@ -63,7 +44,7 @@ static ethd_status set_values(const ethd_setup_key *row, const ethd__config_key 
   return ETHD_OK;
 }
 
-ethd_status ethd__config_number(const ethd__config_key *key, ethd_setup *setup) {
+ethd_status ethd__config_number(const ethd__key *key, ethd_setup *setup) {
   ethd_setup_key row;
   double values[ETHD_RAYS];
   for (uint32_t i = 0; ethd_setup_key_at(setup, i, &row) == ETHD_OK; i++) {
@@ -86,7 +67,7 @@ ethd_status ethd_config_set(const ethd_config *config, const char *name, const c
                      ethd__quote(name, strlen(name), quote));
   memcpy(section, name, (size_t)(dot - name));
   section[dot - name] = 0;
-  ethd__config_key key = {NULL, 0, section, dot + 1, value, message};
+  ethd__key key = {NULL, 0, section, dot + 1, value, message};
   if (ethd__config_in_files_only(section, key.key))
     return ethd__key_refuse(&key, ETHD_E_ARGUMENT, "can't be set, only the file can say it");
   ethd_setup changed = *setup;

@@ -11,7 +11,7 @@ static void list(char out[ETHD_MESSAGE_MAX], const char *id) {
   snprintf(out + n, ETHD_MESSAGE_MAX - n, "%s%s", n ? ", " : "", id);
 }
 
-ethd_status ethd__config_choose(const ethd_config *config, const ethd__config_key *key, ethd_setup *setup) {
+ethd_status ethd__config_choose(const ethd_config *config, const ethd__key *key, ethd_setup *setup) {
   const ethd_setup_part *part = ethd_setup_part_of(key->section);
   char ids[ETHD_MESSAGE_MAX] = "", quote[ETHD_QUOTE_MAX];
   if (ethd_setup_choose(setup, key->section, key->value, config->laws, NULL) == ETHD_OK) return ETHD_OK;
@@ -41,7 +41,7 @@ static void open_caps(const ethd_law *law, double *p) {
   }
 }
 
-ethd_status ethd__config_preset(ethd__config *config, const ethd__config_key *key) {
+ethd_status ethd__config_preset(ethd__config *config, const ethd__key *key) {
   ethd_setup *setup = &config->config.setup;
   if (strcmp(key->value, "product") == 0) return ETHD_OK;
   if (strcmp(key->value, "paper") != 0) return ethd__key_found(key, ETHD_E_UNKNOWN, "product or paper");
@@ -73,7 +73,7 @@ static void keep_common(const ethd_config *config, const ethd_setup_part *part, 
 ethd_status ethd_config_law(const ethd_config *config, const char *kind, const char *id, ethd_setup *setup,
                             char message[ETHD_MESSAGE_MAX]) {
   const ethd_setup_part *part = ethd_setup_part_of(kind);
-  ethd__config_key key = {NULL, 0, kind, "law", id, message};
+  ethd__key key = {NULL, 0, kind, "law", id, message};
   ethd_setup changed = *setup;
   ethd_error error;
   if (!part || part->methods)

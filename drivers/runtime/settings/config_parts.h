@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 #include "ethd/config.h"
-#include "text/ini.h"
+#include "text/key.h"
 
 /* An ethd_config with its private parts. */
 typedef struct ethd__config {
@@ -16,20 +16,6 @@ typedef struct ethd__config {
 } ethd__config;
 
 static inline const ethd__config *ethd__config_whole(const ethd_config *config) { return (const ethd__config *)config; }
-
-/* A key that is being applied, for messages. file NULL: a command set it, not a file. */
-typedef struct ethd__config_key {
-  const char *file;
-  int line;
-  const char *section, *key, *value;
-  char *message;
-} ethd__config_key;
-
-/* Writes "file:line: section.key: ..." and returns `status`. */
-ethd_status ethd__key_refuse(const ethd__config_key *key, ethd_status status, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-/* Writes "... found "value", ALLOWED is allowed" and returns `status`. */
-ethd_status ethd__key_found(const ethd__config_key *key, ethd_status status, const char *allowed);
 
 /* ---- config_sections.c: one row for each section ---- */
 
@@ -42,7 +28,7 @@ typedef enum ethd__pass { ETHD__PASS_PLUGINS, ETHD__PASS_CHOICES, ETHD__PASS_PRE
 typedef struct ethd__file_key {
   const char *key; /* "*": any key, as in [device] */
   ethd__pass pass;
-  ethd_status (*read)(ethd__config *config, const ethd__config_key *key);
+  ethd_status (*read)(ethd__config *config, const ethd__key *key);
 } ethd__file_key;
 
 /* A section. It has these keys, the key that ethd_setup_part_of(name) chooses, and the numbers that the setup has under
@@ -55,13 +41,13 @@ typedef struct ethd__section {
 extern const ethd__section ethd__sections[]; /* a NULL name ends it */
 
 /* Reads the key if it belongs to this pass. */
-ethd_status ethd__config_read(ethd__config *config, const ethd__config_key *key, ethd__pass pass);
+ethd_status ethd__config_read(ethd__config *config, const ethd__key *key, ethd__pass pass);
 
 /* Returns true if commands can't set the key. */
 bool ethd__config_in_files_only(const char *section, const char *key);
 
 /* Refuses a key that its section doesn't have under the laws of the setup. */
-ethd_status ethd__config_unknown(const ethd__config_key *key, const ethd_setup *setup);
+ethd_status ethd__config_unknown(const ethd__key *key, const ethd_setup *setup);
 
 /* Refuses a section that no configuration has, even if it is without keys. */
 ethd_status ethd__config_section_known(const ethd_ini_section *section, const char *file,
@@ -71,7 +57,7 @@ ethd_status ethd__config_section_known(const ethd_ini_section *section, const ch
 
 /* Reads a number, a word or several numbers into the setup. Ranges are checked, relations between keys are left to
    ethd_setup_check. */
-ethd_status ethd__config_number(const ethd__config_key *key, ethd_setup *setup);
+ethd_status ethd__config_number(const ethd__key *key, ethd_setup *setup);
 
 /* Returns the index in ethd_limit_rows, -1 if the key isn't a limit. */
 int ethd__config_limit(const char *section, const char *key);
@@ -79,13 +65,13 @@ int ethd__config_limit(const char *section, const char *key);
 /* ---- the keys of files ---- */
 
 /* Applies law = ... or method = ..., with default parameters. */
-ethd_status ethd__config_choose(const ethd_config *config, const ethd__config_key *key, ethd_setup *setup);
+ethd_status ethd__config_choose(const ethd_config *config, const ethd__key *key, ethd_setup *setup);
 
 /* [scene] file: reads the scene. */
-ethd_status ethd__config_scene(ethd__config *config, const ethd__config_key *key);
+ethd_status ethd__config_scene(ethd__config *config, const ethd__key *key);
 
 /* Applies preset = paper to the parameters that the transition law has; product changes nothing. */
-ethd_status ethd__config_preset(ethd__config *config, const ethd__config_key *key);
+ethd_status ethd__config_preset(ethd__config *config, const ethd__key *key);
 
 #define ETHD__PATIENCE 5 /* s: no plugin needs longer to be loaded, and no law to check its parameters */
 
@@ -102,7 +88,7 @@ void ethd__config_foreign(const ethd_config *config, const char *what);
 ethd_status ethd__config_check(const ethd_config *config, const ethd_setup *setup, ethd_error *error);
 
 /* [plugins] file: opens the plugin and adds its laws to config->laws. */
-ethd_status ethd__config_plugin(ethd__config *config, const ethd__config_key *key);
+ethd_status ethd__config_plugin(ethd__config *config, const ethd__key *key);
 
 /* Returns ETHD_OK if dlopen may map the file, which must be a complete ELF object for this machine. */
 ethd_status ethd__plugin_file_check(const char *path, char what[ETHD_MESSAGE_MAX]);

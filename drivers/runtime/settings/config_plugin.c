@@ -72,7 +72,7 @@ ethd_status ethd__plugin_file_check(const char *path, char what[ETHD_MESSAGE_MAX
   return fault ? ethd__say(what, ETHD_E_LOAD, "%s %s", path, fault) : ETHD_OK;
 }
 
-static ethd_status no_memory(const ethd__config_key *key) {
+static ethd_status no_memory(const ethd__key *key) {
   return ethd__key_refuse(key, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
 }
 
@@ -84,7 +84,7 @@ static uint32_t count_laws(const ethd_law *const *laws) {
   return n;
 }
 
-static ethd_status add_laws(ethd_config *config, const ethd_plugin_entry *entry, const ethd__config_key *key) {
+static ethd_status add_laws(ethd_config *config, const ethd_plugin_entry *entry, const ethd__key *key) {
   uint32_t n = count_laws(config->laws);
   const ethd_law **laws = realloc(config->laws, (n + entry->law_count + 1) * sizeof *laws);
   if (!laws) return no_memory(key);
@@ -100,7 +100,7 @@ static ethd_status add_laws(ethd_config *config, const ethd_plugin_entry *entry,
   return ETHD_OK;
 }
 
-static ethd_status add_file(ethd_config *config, char *path, const ethd__config_key *key) {
+static ethd_status add_file(ethd_config *config, char *path, const ethd__key *key) {
   char **plugins = realloc(config->plugins, (config->plugin_count + 1) * sizeof *plugins);
   if (!plugins) {
     free(path);
@@ -128,7 +128,7 @@ ethd_status ethd__config_check(const ethd_config *config, const ethd_setup *setu
   return status;
 }
 
-static ethd_status open_plugin(ethd_config *config, const char *path, const ethd__config_key *key) {
+static ethd_status open_plugin(ethd_config *config, const char *path, const ethd__key *key) {
   char what[ETHD_MESSAGE_MAX];
   const ethd_plugin_entry *entry;
   ethd_error error;
@@ -146,7 +146,7 @@ static ethd_status open_plugin(ethd_config *config, const char *path, const ethd
   return handle ? ethd__key_refuse(key, status, "%s: %s", key->value, what) : ethd__key_refuse(key, status, "%s", what);
 }
 
-ethd_status ethd__config_plugin(ethd__config *whole, const ethd__config_key *key) {
+ethd_status ethd__config_plugin(ethd__config *whole, const ethd__key *key) {
   if (whole->received)
     return ethd__key_refuse(key, ETHD_E_LOAD, "%s is a program from outside of this folder; --plugins lets it run",
                             key->value);

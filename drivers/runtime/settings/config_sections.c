@@ -22,7 +22,7 @@ static char *whole_path(const ethd__config *c, const char *name, size_t length) 
 }
 
 /* Adds the next name, of `length` bytes. */
-static ethd_status add_driver(ethd__config *c, const ethd__config_key *key, const char *name, size_t length) {
+static ethd_status add_driver(ethd__config *c, const ethd__key *key, const char *name, size_t length) {
   const size_t mark = strlen(ETHD_DRIVER_FILE);
   char *to = c->config.device, *path = NULL;
   size_t n = strlen(to), room = sizeof c->config.device - n;
@@ -39,7 +39,7 @@ static ethd_status add_driver(ethd__config *c, const ethd__config_key *key, cons
                           ETHD_DRIVERS_TEXT_MAX - 1);
 }
 
-static ethd_status driver(ethd__config *c, const ethd__config_key *key) {
+static ethd_status driver(ethd__config *c, const ethd__key *key) {
   const char *name = key->value;
   ethd_status status = ETHD_OK;
   c->config.device[0] = 0;
@@ -54,7 +54,7 @@ static ethd_status driver(ethd__config *c, const ethd__config_key *key) {
   return status;
 }
 
-static ethd_status device_setting(ethd__config *c, const ethd__config_key *key) {
+static ethd_status device_setting(ethd__config *c, const ethd__key *key) {
   c->config.settings[c->config.setting_count++] = (ethd_setting){key->key, key->value, key->line};
   return ETHD_OK;
 }
@@ -101,7 +101,7 @@ bool ethd__config_in_files_only(const char *section, const char *key) {
 
 /* ---- any key ---- */
 
-ethd_status ethd__config_read(ethd__config *whole, const ethd__config_key *key, ethd__pass pass) {
+ethd_status ethd__config_read(ethd__config *whole, const ethd__key *key, ethd__pass pass) {
   ethd_config *c = &whole->config;
   const ethd__file_key *file_key = find_file_key(key->section, key->key);
   if (file_key) return file_key->pass == pass ? file_key->read(whole, key) : ETHD_OK;
@@ -136,7 +136,7 @@ ethd_status ethd__config_section_known(const ethd_ini_section *section, const ch
                    unknown_section(what));
 }
 
-ethd_status ethd__config_unknown(const ethd__config_key *key, const ethd_setup *setup) {
+ethd_status ethd__config_unknown(const ethd__key *key, const ethd_setup *setup) {
   const ethd__section *section = find_section(key->section);
   const ethd_setup_part *part = ethd_setup_part_of(key->section);
   char list[ETHD_MESSAGE_MAX] = "";
