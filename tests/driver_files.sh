@@ -96,7 +96,7 @@ refused driver_id 2 "its id isn't 1 to 31 of a-z 0-9 - _"
 refused driver_no_id 2 "its id isn't 1 to 31 of a-z 0-9 - _"
 refused driver_brief 2 "the brief of broken isn't one line"
 refused driver_no_open 2 'broken has no open'
-refused driver_no_safe 2 'broken takes torque and has no safe to let go'
+refused driver_no_safe 2 'broken takes torque and has no safe to remove it'
 refused driver_no_service 2 'broken has units of I/O and no service'
 refused driver_param 2 'broken: params: row 1, gain: found min 0, max 1, default 7; min <= default'
 refused driver_limits 2 'device broken: limits: speed: '

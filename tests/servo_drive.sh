@@ -84,7 +84,7 @@ drive svd48v --lock-step 0.005
 tell turn 0.2 -0.4 >/dev/null
 servo_ini lost svd48v.map
 "$run" --config "$folder/lost.ini" --duration 1 >"$folder/lost" 2>&1 </dev/null && fail "started without a reference"
-says "$folder/lost" 'nobody knows where joint 1 stands: home it; or stand the arm in its jig'
+says "$folder/lost" 'the angle of joint 1 is unknown: home it; or stand the arm in its jig'
 servo_ini home svd48v.map 'home = stop' 'q1 = 1.25' 'q2 = -0.75' 'home_way2 = -1' 'home_speed = 0.5'
 printf 'status\nstop\n' | "$run" --config "$folder/home.ini" --home --virtual --duration 1 --record "$folder/homed" >"$folder/home" 2>&1 ||
   fail "homing: exit $?: $(cat "$folder/home")"

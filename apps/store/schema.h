@@ -1,6 +1,6 @@
 /* The tables of study.sqlite as SQLite keeps their text, with which that of a received file is compared. What a check
-   refuses can't be put; a reader repeats it, because SQLite forgets checks where it may not write. Figures have no type: as REAL they would lose the sign of a zero. Seeds are text,
-   because integers end at 2^63. */
+   refuses can't be put; a reader repeats it, because SQLite forgets checks where it may not write. Figures have no
+   type: as REAL they would lose the sign of a zero. Seeds are text, because integers end at 2^63. */
 #ifndef ETHD__APPS_STORE_SCHEMA_H
 #define ETHD__APPS_STORE_SCHEMA_H
 

@@ -2,7 +2,7 @@
    datagrams of a bridge (camera.h).
 
    It listens where `listen` says and nowhere else. That is this machine alone (127.0.0.1, ::1) unless `from` names the
-   one address whose datagrams count, because whoever can send them moves the ring. */
+   one address whose datagrams count, because their sender moves the ring. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -170,7 +170,7 @@ static ethd_status find_addresses(camera *c, const ethd_device_def *def, const e
     return refuse(def, texts[FROM], keys[FROM], "the bridge's address as 192.168.1.7 is allowed", message);
   if (!texts[FROM] && !is_loopback(&c->own))
     return refuse(def, texts[LISTEN], keys[LISTEN],
-                  "127.0.0.1 is allowed, and others with `from`: whoever can send there moves the ring", message);
+                  "127.0.0.1 is allowed, and others with `from`: a sender to this address moves the ring", message);
   return ETHD_OK;
 }
 

@@ -23,7 +23,7 @@ typedef struct ethd__servo_bus {
   bool at_once;     /* the line hands bytes over at once; true of every tcp connection */
   int error;        /* errno of the last failure, libmodbus's included */
   int64_t quiet_ns; /* CLOCK_MONOTONIC: when the line was left */
-  int64_t asked_ns; /* likewise: just before the last question went out */
+  int64_t asked_ns; /* just before the last question went out */
 } ethd__servo_bus;
 
 /* Opens map->port. Serial: the map's baud, whatever it is, read back. Blocks for map->connect at most. The message

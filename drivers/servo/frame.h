@@ -28,7 +28,7 @@ void ethd__servo_frame_both(const ethd__servo_map *map, ethd__servo_span to, con
 void ethd__servo_frame_number(const ethd__servo_map *map, uint16_t number, ethd__servo_frame *question);
 
 /* True while the bytes so far can be the beginning of an answer: they have the number, the unit and the function that
-   were asked. False for noise and for somebody else's answer; waiting longer is then useless. [any] */
+   were asked. False for noise and for another unit's answer; waiting longer is then useless. [any] */
 bool ethd__servo_frame_begins(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
                               int length);
 

@@ -19,7 +19,7 @@
 #include "servo/frame.h"
 #include "servo/plan.h"
 
-/* Who may write to the line. FREE: the guardian has written and is done; whoever comes next connects anew. */
+/* Who may write to the line. FREE: the guardian has written and is done; the next user connects anew. */
 enum { ETHD__GUARDIAN_OURS, ETHD__GUARDIAN_ITS, ETHD__GUARDIAN_FREE };
 
 /* The shared page. */

@@ -1,4 +1,4 @@
-/* Finds out at which angles the joints are: somebody put the arm into its jig and says so, or the joints are moved.
+/* Finds out at which angles the joints are: a person puts the arm into its jig and says so, or the joints are moved.
    [main] */
 #include <math.h>
 #include <time.h>
@@ -9,7 +9,7 @@
 #include "text/error_text.h"
 
 #define PAUSE 200000 /* ns */
-#define FAILURES 20  /* so many bad turns in a row end the search */
+#define FAILURES 20  /* bad turns in a row that end the search */
 
 /* ---- one turn lasts an exchange; on a virtual clock nothing waits ---- */
 
@@ -54,7 +54,8 @@ static ethd_status find(ethd__servo_device *d, int axis) {
   for (int bad = 0; status == ETHD_STATUS_BUSY && bad < FAILURES;) {
     bad = turn(d, torque) ? bad + 1 : 0;
     if (bad) continue;
-    if (is_ill(d)) return ethd__say(d->link.message, ETHD_E_DEVICE, "joint %d: the drive lets go", d->joint[axis] + 1);
+    if (is_ill(d))
+      return ethd__say(d->link.message, ETHD_E_DEVICE, "joint %d: the drive removed the torque", d->joint[axis] + 1);
     status = ethd__homing_turn(def, &homing, s->q[axis], 1e-9 * (double)(s->stamp_ns - last), index_of(d, axis) != mark,
                                &torque[axis]);
     last = s->stamp_ns;

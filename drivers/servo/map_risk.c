@@ -1,4 +1,4 @@
-/* Says what a map leaves open, to whoever enables the drive. */
+/* Says before the drive is enabled what a map leaves open. */
 #include "servo/map.h"
 #include "servo/words.h"
 

@@ -14,7 +14,7 @@
 const ethd_param ethd__servo_params[ETHD__SERVO_PARAMS] = {
     [ETHD__SERVO_Q1] = {"q1", "rad", -100, 100, 0,
                         "joint 1 in the jig, at the stop or at the mark; in the jig when the device is opened"},
-    [ETHD__SERVO_Q2] = {"q2", "rad", -100, 100, 0, "joint 2, likewise"},
+    [ETHD__SERVO_Q2] = {"q2", "rad", -100, 100, 0, "the same of joint 2"},
     [ETHD__SERVO_JOINT] = {"joint", "1", 1, 2, 1, "of a map with one axis: which joint that is"},
     [ETHD__SERVO_SPEED] = {"speed", "m/s", 0.01, 10, 1.2, "of the ring: faster is row 24 of the fault table"},
     [ETHD__SERVO_HOME] = {"home", "jig|stop|index", 0, 2, 0,
@@ -23,7 +23,7 @@ const ethd_param ethd__servo_params[ETHD__SERVO_PARAMS] = {
     [ETHD__SERVO_HOME_TORQUE] = {"home_torque", "Nm", 0, 100, 0, "at most; 0: 0.15 of the largest"},
     [ETHD__SERVO_HOME_WAY1] = {"home_way1", "1", -1, 1, 1,
                                "1 or -1: towards joint 1's stop or mark its angle rises or falls"},
-    [ETHD__SERVO_HOME_WAY2] = {"home_way2", "1", -1, 1, 1, "likewise of joint 2"},
+    [ETHD__SERVO_HOME_WAY2] = {"home_way2", "1", -1, 1, 1, "the same of joint 2"},
     [ETHD__SERVO_UNGUARDED] = {"unguarded", "no|yes", 0, 1, 0,
                                "enable also where the guardian would end with this program: its torque then stays"},
 };

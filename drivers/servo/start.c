@@ -95,8 +95,7 @@ static ethd_status start_locked(ethd__servo_device *d) {
   if (lost)
     return ethd__say(
         d->link.message, ETHD_E_DEVICE,
-        "nobody knows where joint %d stands: home it; or stand the arm in its jig and give device.q1, q2 (step 4)",
-        lost);
+        "the angle of joint %d is unknown: home it; or stand the arm in its jig and give device.q1, q2 (step 4)", lost);
   ethd_status status = ethd__servo_enable(d);
   if (!status) atomic_store(&d->safe, 0);
   return status;

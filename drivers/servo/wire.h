@@ -6,7 +6,7 @@
 
 typedef struct ethd__servo_wire {
   uint32_t questions; /* in an exchange, without those about slow registers */
-  uint32_t bytes;     /* of these questions and their answers */
+  uint32_t bytes;     /* of these requests and their answers */
   double usual;       /* s that these take, with turnarounds and silences */
   double most;        /* s, with all questions about slow registers that may fall into one exchange */
 } ethd__servo_wire;
@@ -16,7 +16,7 @@ typedef struct ethd__servo_wire {
    NAN means the map's. [any] */
 ethd__servo_wire ethd__servo_wire_of(const ethd__servo_map *map, double turnaround);
 
-/* The smallest divisor at which an exchange of so many seconds, with a tenth to spare, ends before the next begins.
+/* The smallest divisor at which an exchange of this length, s, with a tenth to spare, ends before the next begins.
    [any] */
 uint32_t ethd__servo_divisor_for(double exchange, double period);
 

@@ -32,7 +32,7 @@ typedef struct ethd_config {
 typedef struct ethd_config_source {
   ethd_sizes sizes; /* with which the program was compiled */
   uint32_t config;  /* sizeof(ethd_config) with which it was compiled */
-  int32_t received; /* 1: somebody else made it */
+  int32_t received; /* 1: another person made it */
   const char *path; /* of the file; with `text` a name for messages; NULL: none */
   const char *text; /* NULL: the file's */
   size_t length;    /* of text, bytes */
@@ -53,7 +53,7 @@ static inline ETHD_MUST_CHECK ethd_status ethd_config_load(const char *path, eth
   return ethd_config_make(&source, out, message);
 }
 
-/* Reads a file that somebody else made, in a recording or a study's folder, and runs nothing of theirs: a plugin is
+/* Reads a file that another person made, in a recording or a study's folder, and runs nothing of theirs: a plugin is
    refused (ETHD_E_LOAD), with a hint at the programs' option --plugins. Its scene is a regular file of that folder, reached
    without a link, and so is the file itself (ETHD_E_FILE). */
 static inline ETHD_MUST_CHECK ethd_status ethd_config_load_received(const char *path, ethd_config **out,
@@ -71,7 +71,7 @@ static inline ETHD_MUST_CHECK ethd_status ethd_config_parse(const char *text, si
   return ethd_config_make(&source, out, message);
 }
 
-/* The same for text that somebody else made: a plugin is refused as ethd_config_load_received refuses it (ETHD_E_LOAD), and
+/* The same for text that another person made: a plugin is refused as ethd_config_load_received refuses it (ETHD_E_LOAD), and
    no code of theirs runs; nor is a scene read from outside of `folder` or through a link (ETHD_E_FILE). */
 static inline ETHD_MUST_CHECK ethd_status ethd_config_parse_received(const char *text, size_t length, const char *name,
                                                                      const char *folder, ethd_config **out,

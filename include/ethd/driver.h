@@ -6,7 +6,7 @@
    from now on; stop [main] disables; close [main] frees. The simulated device is a driver like any other.
 
    Any function but open and close may be NULL: the driver then has nothing to do, to read or to limit there. But a
-   driver that has write must have safe too, because what takes a torque must be able to let go of it.
+   driver that has write must have safe too, because a device that takes a torque must be able to remove it.
 
    One device may consist of several drivers (a servo, its encoders, a proximity ring): each adds what it
    knows to the sense, and takes from the command what is its own. They are read and written in the order of their
@@ -33,7 +33,7 @@
 ETHD_BEGIN_DECLS
 
 /* The interface's version, 2, and the bytes of what a driver fills or returns, so that none of these grows unnoticed;
-   never 0, which is a table whose abi nobody has set. */
+   never 0, which is a table whose abi was not set. */
 #define ETHD_DRIVER_ABI \
   ((uint32_t)(20000 + sizeof(ethd_sense) + sizeof(ethd_command) + sizeof(ethd_limits) + sizeof(ethd_dynamics)))
 #define ETHD_DRIVERS_MAX 4         /* behind one device */

@@ -19,7 +19,7 @@
 
    A stop ends with zero torque: when the links are slower than 20 mm/s (the paper's v_th, eq. 11), when it may command
    next to nothing for longer than reaction + T because the speed doesn't fall, and at limits.stop_time. An unknown mass
-   is assumed as ETHD_MASS_ASSUMED; a heavier device isn't braked but let go. An unknown delay is assumed as limits.gap,
+   is assumed as ETHD_MASS_ASSUMED; the torque of a heavier device is removed without braking. An unknown delay is assumed as limits.gap,
    without one as ETHD_DELAY_ASSUMED.
 
    The wall of limits.margin has the gains with which a mass under a force that is `2 reaction` late comes to rest
@@ -57,7 +57,7 @@ typedef struct ethd_limits {
   double finger_lost;    /* s: when it is older than this, the ring is stopped; without either no reading is judged */
   double clean_time;     /* s without a reason to stop before an acknowledgement counts, >= 0, finite;
                           longer is stricter */
-  double stop_time;      /* s: a stop that lasts longer lets go, > 0; INFINITY: ETHD_STOP_TIME */
+  double stop_time;      /* s: a stop that lasts longer ends without torque, > 0; INFINITY: ETHD_STOP_TIME */
 } ethd_limits;
 
 /* A row for each limit, by which they are read, written and compared. */
@@ -158,7 +158,7 @@ typedef struct ethd_guard_state {
   } stop;
   uint64_t counts[ETHD_GUARD_COUNT];
   int32_t stopping; /* ETHD_GUARD_* bits of what stops the ring, 0: nothing does; callers may set it */
-  int32_t stopped;  /* 1: the ring stands still or must be let go, so the torque is zero until this is cleared */
+  int32_t stopped;  /* 1: the ring stands still or the stop has failed, so the torque is zero until this is cleared */
 } ethd_guard_state;
 
 #define ETHD_MASS_ASSUMED 0.06   /* kg: of a device whose mass isn't known */

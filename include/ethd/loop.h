@@ -96,7 +96,7 @@ typedef struct ethd_loop_def {
   const ethd_driver *driver; /* of ethd_device_open; or one that has start, read, write and safe, and service if it
                             has units */
   void *device;              /* open; it is started between create and start */
-  ethd_control *control;     /* which nobody else steps while the loop exists */
+  ethd_control *control;     /* no other code may step it while the loop exists */
   double period;             /* s, the controller's (ethd_control_period), 1e-5 to 1; another one is refused */
   int32_t cpu;               /* number of a processor, ETHD_CPU_NONE or ETHD_CPU_AUTO */
   int32_t priority;          /* of SCHED_FIFO, 1 to 99; the device's I/O threads come ETHD_IO_BELOW under it */
@@ -194,12 +194,12 @@ ETHD_API void ethd_loop_raise(ethd_loop *loop, ethd_fault fault);
 ETHD_API void ethd_loop_acknowledge(ethd_loop *loop);
 
 /* Starts the device again, restarts the controller and arms, with a soft start; meanwhile the loop leaves both alone.
-   Must not be called while a posted setup waits. ETHD_STATUS_BUSY: the loop didn't let go within a second; else what the
+   Must not be called while a posted setup waits. ETHD_STATUS_BUSY: the loop kept the device for over a second; else what the
    device's start returns: if that isn't ETHD_OK, the loop is disarmed. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_enable(ethd_loop *loop);
 
 /* Calls the device's home, with the joints' angles, rad, or NULL (driver.h), while it is disarmed and the loop leaves
-   it alone. A controller without a fault is then restarted, since the pose may jump. ETHD_STATUS_BUSY: the loop didn't let go,
+   it alone. A controller without a fault is then restarted, since the pose may jump. ETHD_STATUS_BUSY: the loop kept the device,
    or is armed. ETHD_E_ARGUMENT: the device has no home. ETHD_E_RANGE: an angle that isn't finite or is over
    ETHD_SENSE_ANGLE_MAX; else what its home returns. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_home(ethd_loop *loop, const double *q);

@@ -59,8 +59,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
      start       detail: free words. A new controller (or a reset one) with the present setup; with "enabled" the
                  running one was restarted and its motors keep their heat
      transition  detail: law. Changes the transition law of the present setup
-     contact     detail: law. Likewise its contact law
-     tracking    detail: law. Likewise its tracking law
+     contact     detail: law. Its contact law
+     tracking    detail: law. Its tracking law
      set         detail: section.key value. Changes the present setup
      clear       faults were acknowledged
      heat        detail: h1 h2. The motors' heat, see ethd_control_heat

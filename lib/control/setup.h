@@ -23,7 +23,7 @@ typedef struct ethd__setup_field {
 #define ETHD__SETUP_FIELDS 15
 extern const ethd__setup_field ethd__setup_fields[ETHD__SETUP_FIELDS];
 
-/* Returns how many of a table's parameters a setup has room for. A table that nobody has checked yet may say that it has
+/* Returns how many of a table's parameters a setup has room for. An unchecked table may say that it has
    more, or not be there. */
 static inline uint32_t ethd__setup_room(const ethd_param *params, uint32_t count) {
   if (!params) return 0;

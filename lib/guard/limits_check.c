@@ -30,7 +30,7 @@ const ethd_limit ethd_limit_rows[ETHD_LIMITS] = {
      "age of the finger's reading at which the ring is stopped"},
     {"clean_time", "s", AT(clean_time), 1, ETHD_LIMIT_LEAST, 0, 1e6,
      "without a fault before an acknowledgement counts"},
-    {"stop_time", "s", AT(stop_time), 1, ETHD_LIMIT_MOST, 1e-3, INF, "longest stop, after which the ring is let go"},
+    {"stop_time", "s", AT(stop_time), 1, ETHD_LIMIT_MOST, 1e-3, INF, "longest stop, after which the torque is removed"},
 };
 
 /* Returns the value that means "no limit", for number i of the row. */

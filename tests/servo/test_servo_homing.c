@@ -146,7 +146,7 @@ static void count(int at, int64_t n) {
 static void refused_for(int which) {
   char says[64];
   int control = drive.words[MOCK_CONTROL];
-  snprintf(says, sizeof says, "nobody knows where joint %d stands", which);
+  snprintf(says, sizeof says, "the angle of joint %d is unknown", which);
   ck_assert_int_eq(servo->start(device), ETHD_E_DEVICE);
   ck_assert_msg(strstr(servo->why(device), says), "%s", servo->why(device));
   ck_assert_int_eq(drive.words[MOCK_CONTROL], control); /* nothing was written for it */

@@ -27,7 +27,7 @@ TEST(test_refused) {
       {"[::1:9871", NULL, "x.ini:2: device.listen: "},
       {"1111111111111111111111111111111111111111111111111111111111111111111111111111111111111111111111111:9871", NULL,
        "x.ini:2: device.listen: "},
-      {"0.0.0.0:9871", NULL, "127.0.0.1 is allowed, and others with `from`: whoever can send there moves the ring"},
+      {"0.0.0.0:9871", NULL, "127.0.0.1 is allowed, and others with `from`: a sender to this address moves the ring"},
       {"[::]:9871", NULL, "127.0.0.1 is allowed, and others with `from`"},
       {"[::2]:9871", NULL, "127.0.0.1 is allowed, and others with `from`"},
       {"[::1:0:1]:9871", NULL, "127.0.0.1 is allowed, and others with `from`"},

@@ -119,7 +119,7 @@ TEST(test_drivers) {
   REFUSED(ETHD_E_TABLE, "sound: keys: not words, or no NULL behind them", d.keys = many);
   REFUSED(ETHD_E_ARGUMENT, "sound has no open", d.open = NULL);
   REFUSED(ETHD_E_ARGUMENT, "sound has no close", d.close = NULL);
-  REFUSED(ETHD_E_ARGUMENT, "sound takes torque and has no safe to let go", d.safe = NULL);
+  REFUSED(ETHD_E_ARGUMENT, "sound takes torque and has no safe to remove it", d.safe = NULL);
   REFUSED(ETHD_E_ARGUMENT, "sound has units of I/O and no service", d.service = NULL);
   REFUSED(ETHD_E_ARGUMENT, "sound has a service and no units", d.units = NULL);
 }

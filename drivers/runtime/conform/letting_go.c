@@ -1,4 +1,4 @@
-/* Questions about the end of a torque: not renewed, not spoken to, told to be safe, started anew. */
+/* Questions about the end of a torque: not renewed, without messages, made safe, started anew. */
 #include "conform/letting_go.h"
 
 #include <math.h>
@@ -53,15 +53,15 @@ ethd_verdict ethd__conform_watchdog(const ethd_conform_def *def, ethd_conform_an
   ethd__conform_rig_end(&r);
   if (!is_pushed(&r, pushed, a)) return a->verdict;
   if (left <= most)
-    return ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT,
-                                    "%.3g rad/s^2 under torque, %.3g once nobody had written for %g s", pushed, left,
-                                    2 * window(&r));
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT, "%.3g rad/s^2 under torque, %.3g after %g s without a write",
+                                    pushed, left, 2 * window(&r));
   return ethd__conform_rig_answer(a, ETHD_VERDICT_AT_RISK,
                                   "none: still %.3g of %.3g rad/s^2, %g s after the last write", left, pushed,
                                   2 * window(&r));
 }
 
-/* Enabled and without a word from this computer, not even from the I/O threads, a device should let go by itself. */
+/* Enabled and without a message from this computer, not even from the I/O threads, a device should remove the torque by
+   itself. */
 ethd_verdict ethd__conform_silence(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
   if (def->device->is_virtual)
@@ -81,8 +81,9 @@ ethd_verdict ethd__conform_silence(const ethd_conform_def *def, ethd_conform_ans
   if (!is_pushed(&r, pushed, a)) return a->verdict;
   if (left <= LEFT * pushed)
     return ethd__conform_rig_answer(
-        a, ETHD_VERDICT_KEPT, "it lets go by itself: %.3g rad/s^2 under torque, %.3g after %g s without a message",
-        pushed, left, SILENCE);
+        a, ETHD_VERDICT_KEPT,
+        "it removes the torque by itself: %.3g rad/s^2 under torque, %.3g after %g s without a message", pushed, left,
+        SILENCE);
   return ethd__conform_rig_answer(a, ETHD_VERDICT_AT_RISK,
                                   "no watchdog of its own: after %g s without a message %.3g of %.3g rad/s^2", SILENCE,
                                   left, pushed);

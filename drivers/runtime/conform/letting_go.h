@@ -7,10 +7,10 @@
 /* A torque that is not renewed ends. */
 ethd_verdict ethd__conform_watchdog(const ethd_conform_def *def, ethd_conform_answer *a);
 
-/* A device that isn't spoken to at all lets go by itself. */
+/* A device that gets no message at all removes the torque by itself. */
 ethd_verdict ethd__conform_silence(const ethd_conform_def *def, ethd_conform_answer *a);
 
-/* A device that was told to be safe stays so, whatever is written. */
+/* A device that was made safe stays so, whatever is written. */
 ethd_verdict ethd__conform_safe(const ethd_conform_def *def, ethd_conform_answer *a);
 
 /* A start remembers no torque from before. */

@@ -17,7 +17,7 @@ int ethd__container_depth(void);
    around it, is 1. `root` is "" or, in tests, the folder in which proc and sys are. [main] */
 bool ethd__group_dies_whole(const char *root);
 
-/* True in the control group of a systemd service; `root` likewise. [main] */
+/* True in the control group of a systemd service; `root` as above. [main] */
 bool ethd__group_is_service(const char *root);
 
 #endif

@@ -28,7 +28,7 @@ static bool keys_are_words(const char *const *keys) {
 /* Says what is wrong with the functions; NULL when nothing is. */
 static const char *functions_fault(const ethd_driver *d) {
   if (!d->open || !d->close) return d->open ? "has no close" : "has no open";
-  if (d->write && !d->safe) return "takes torque and has no safe to let go";
+  if (d->write && !d->safe) return "takes torque and has no safe to remove it";
   if (!d->units != !d->service) return d->units ? "has units of I/O and no service" : "has a service and no units";
   return NULL;
 }

@@ -28,7 +28,7 @@ static const ethd_param params[PARAMS] = {
     [LOW] = {"low", "Hz", 0.1, 100, 0.5, "lowest frequency"},
     [HIGH] = {"high", "Hz", 1, 400, 40, "highest frequency"},
     [X] = {"x", "m", -100, 100, 0.25, "the place about which the ring moves"},
-    [Y] = {"y", "m", -100, 100, 0.25, "likewise"},
+    [Y] = {"y", "m", -100, 100, 0.25, "the same in y"},
     [HALF] = {"half", "m", 1e-3, 10, 0.05, "half the side of the box about it that the ring mustn't leave"},
 };
 

@@ -115,7 +115,7 @@ static void disarm(ethd_loop *l) {
   l->was_armed = 0;
 }
 
-/* False when there is no newer sample than at the last step: the torque is then held, unless somebody disarmed. */
+/* False when there is no newer sample than at the last step: the torque is then held, unless the loop was disarmed. */
 static bool read_device(ethd_loop *l) {
   if (!l->held) memset(&l->sense, 0, sizeof l->sense);
   ethd_status status = l->def.driver->read(l->def.device, l->due, &l->sense);

@@ -14,8 +14,8 @@
 #include "loop/loop.h"
 
 #define SERVICE_STACK ((size_t)256 << 10)
-#define PAUSE 1000000 /* ns between two looks at whether the loop has let go, */
-#define PATIENCE 1000 /* of which there are so many at most */
+#define PAUSE 1000000 /* ns between two looks at whether the loop has left the device, */
+#define PATIENCE 1000 /* looks at most */
 
 static void pause_a_little(void) {
   struct timespec t = {.tv_nsec = PAUSE};
@@ -169,7 +169,7 @@ ethd_status ethd_loop_start(ethd_loop *l, ethd_error *error) {
 
 /* ---- while it runs ---- */
 
-/* The loop lets go between two ticks; then device and controller are [main]'s. */
+/* The loop leaves the device between two ticks; then device and controller are [main]'s. */
 static bool take_over(ethd_loop *l) {
   int asked = ETHD__LOOP_ASKED;
   if (!l->has_control || ethd_loop_ended(l)) return l->def.clock != NULL;
@@ -191,7 +191,7 @@ ethd_status ethd_loop_enable(ethd_loop *l) {
     ethd_control_restart(l->def.control);
     arm(l);
   } else {
-    ethd_loop_disarm(l); /* nobody knows what state the device is in */
+    ethd_loop_disarm(l); /* the state of the device is unknown */
   }
   atomic_store_explicit(&l->mode, ETHD__LOOP_RUNS, memory_order_release);
   return status;
@@ -211,7 +211,7 @@ ethd_status ethd_loop_home(ethd_loop *l, const double *q) {
   return status;
 }
 
-/* Gives the thread up, unless its step ends first; whoever comes first, the thread or [main], has the device. */
+/* Gives the thread up, unless its step ends first; the first of thread and [main] to ask has the device. */
 static ethd_status give_up_thread(ethd_loop *l) {
   int64_t step = atomic_load_explicit(&l->stepping, memory_order_acquire);
   bool taken = step > 0 && atomic_compare_exchange_strong(&l->stepping, &step, ETHD__LOOP_LEFT);

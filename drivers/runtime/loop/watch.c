@@ -1,4 +1,4 @@
-/* The thread that watches the loop's: it lets go of the device when that one is dead. */
+/* The thread that watches the loop's thread and makes the device safe when that one is dead. */
 #include <stdbool.h>
 #include <time.h>
 
@@ -22,7 +22,7 @@ static int64_t left_to_live(const ethd_loop *l, const watch *w) {
   return by_gap < by_step ? by_gap : by_step;
 }
 
-/* Lets go of the device from this thread, and tells the loop in case it lives again at this very moment. */
+/* Makes the device safe from this thread, and tells the loop in case it lives again at this moment. */
 static void let_go(ethd_loop *l) {
   ethd_loop_raise(l, ETHD_FAULT_LOOP);
   ethd_loop_disarm(l);
@@ -45,7 +45,7 @@ void *ethd__loop_watch(void *loop) {
   watch w = {.now = ethd__loop_now(l), .alive = ethd__loop_now(l)};
   while (!ethd_loop_ended(l) && !atomic_load_explicit(&l->left, memory_order_relaxed)) {
     int64_t left = left_to_live(l, &w);
-    /* nothing is left once the device was let go: the thread waits for the end of the hanging step */
+    /* nothing is left once the device is safe: the thread waits for the end of the hanging step */
     struct timespec t = {.tv_nsec = left < 1 ? SOON : left < LOOK_MAX ? left : LOOK_MAX};
     nanosleep(&t, NULL);
     look(l, &w);

@@ -15,7 +15,7 @@
 
 typedef struct config_reading {
   ethd__config *whole;
-  bool received;    /* the file comes from somebody else */
+  bool received;    /* the file comes from another person */
   const char *name; /* of the file */
   char *message;
 } config_reading;

@@ -12,7 +12,7 @@ typedef struct ethd__config {
   ethd_config config; /* first: the public part */
   ethd_ini ini;
   char *scene_path;
-  bool received; /* it comes from somebody else, so its plugins stay closed */
+  bool received; /* it comes from another person, so its plugins stay closed */
 } ethd__config;
 
 static inline const ethd__config *ethd__config_whole(const ethd_config *config) { return (const ethd__config *)config; }
