@@ -155,7 +155,7 @@ static void from_plant(const ethd_config *config, ethd__figures *f) {
   char message[ETHD_MESSAGE_MAX];
   ethd_plant p;
   const ethd_setting *own = setting(config, "plant");
-  char *path = ethd__plant_path(own ? own->value : "n", config->folder);
+  char *path = ethd__plant_path(own ? own->value : ETHD__PLANT, config->folder);
   ethd_status status = path ? ethd_plant_load(path, &p, message) : ETHD_E_MEMORY;
   free(path);
   if (status) return;

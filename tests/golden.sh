@@ -67,7 +67,7 @@ END
 
 run() { # FOLDER: every plant, law and speed; the paper's laws in the columns that they had without the other
   mkdir "$1"
-  for plant in n b p; do
+  for plant in q n b p; do
     "$bin/ethd-tap" --plant $plant --taps 3 --seed 7 --transition abrupt,smooth,offset --csv "$1/$plant.csv" \
       --record "$1/$plant" >/dev/null
     for table in "$1/$plant.csv" "$1/$plant/taps.csv"; do

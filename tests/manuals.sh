@@ -63,9 +63,9 @@ while read -r expected words; do # what an option takes, in its short and long f
   found=$(completed $words | tr ' ' ,)
   [ "${found:--}" = "$expected" ] || fail "$words: completed to $found, not to $expected"
 done <<END
-n,b,p ethd-tap --plant =
-n,b,p ethd-tap -p =
-n,b,p ethd-identify --base =
+q,n,b,p ethd-tap --plant =
+q,n,b,p ethd-tap -p =
+q,n,b,p ethd-identify --base =
 paper ethd-tap --validity p
 wall ethd-tune --prefer w
 low,high ethd-tap -s low,h

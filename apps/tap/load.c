@@ -23,7 +23,7 @@ static char *joined(const char *a, const char *b) {
   return had(asprintf(&text, "%s%s", a, b) < 0 ? NULL : text);
 }
 
-static bool came_along(const char *plant) { return !strcmp(plant, "n") || !strcmp(plant, "b") || !strcmp(plant, "p"); }
+static bool came_along(const char *plant) { return strlen(plant) == 1 && strchr("qnbp", *plant); }
 
 /* "n" and ".ini" to the file that came with the programs; "my/dev", "my/dev.plant" to my/dev.ini. */
 static char *beside_plant(const char *plant, const char *suffix) {
@@ -44,7 +44,7 @@ static void load_plant(const char *plant, bool simulated, ethd__loaded *out) {
   if (plant) {
     out->plant_path = beside_plant(plant, ".plant");
   } else {
-    plant = device.plant ? device.plant->value : "n";
+    plant = device.plant ? device.plant->value : ETHD__PLANT;
     out->plant_path = had(ethd__plant_path(plant, out->config->folder));
   }
   out->plant_name = had(strdup(plant));
@@ -70,11 +70,11 @@ static ethd_config *with_wall(ethd_config *config, const char *path) {
 
 static void load_config(const char *config, const char *plant, bool plugins, ethd__loaded *out) {
   char message[ETHD_MESSAGE_MAX];
-  out->path = config ? had(strdup(config)) : beside_plant(plant ? plant : "n", ".ini");
+  out->path = config ? had(strdup(config)) : beside_plant(plant ? plant : ETHD__PLANT, ".ini");
   if (!config && access(out->path, F_OK))
     ethd__fail(ETHD_EXIT_INPUT,
-               "%s: %s; it is the configuration of the plant \"%s\": put it there, or name another one; n, b and p "
-               "came with theirs",
+               "%s: %s; it is the configuration of the plant \"%s\": put it there, or name another one; q, n, b and "
+               "p came with theirs",
                out->path, strerror(errno), plant);
   check((plugins ? ethd_config_load : ethd_config_load_received)(out->path, &out->config, message), message);
   if (!out->config->scene) out->config = with_wall(out->config, out->path);
@@ -83,7 +83,7 @@ static void load_config(const char *config, const char *plant, bool plugins, eth
 void ethd__load(const char *config, const char *plant, bool simulated, bool plugins, ethd__loaded *out) {
   *out = (ethd__loaded){0};
   load_config(config, plant, plugins, out);
-  load_plant(plant || config ? plant : "n", simulated, out);
+  load_plant(plant || config ? plant : ETHD__PLANT, simulated, out);
 }
 
 void ethd__loaded_free(ethd__loaded *loaded) {

@@ -13,7 +13,7 @@ typedef struct ethd__loaded {
   char *plant_name, *plant_path;
 } ethd__loaded;
 
-/* Loads them. config: a file; NULL: the plant's own. plant: n, b or p, which came with the programs, or a file, with or
+/* Loads them. config: a file; NULL: the plant's own. plant: q, n, b or p, which came with the programs, or a file, with or
    without .plant; NULL: the one that the configuration's [device] names, else n. simulated: any other device is
    refused; without it [device] is ignored. Exit 2 on bad input. */
 void ethd__load(const char *config, const char *plant, bool simulated, bool plugins, ethd__loaded *out);

@@ -65,7 +65,7 @@ static const struct argp_option options[] = {
     {"taps", 'n', "N", 0,
      "attempts for each law and speed (100; 10 with --finger; with --paper 400, twice as many at high speed)", 0},
     {"seed", 'r', "S", 0, "seed of every random number (1)", 0},
-    {"plant", 'p', "n|b|p|FILE", 0,
+    {"plant", 'p', "q|n|b|p|FILE", 0,
      "the simulated device and finger (default: that of --config, else n); a FILE.plant has FILE.ini beside it", 0},
     {"finger", 'f', "FILE.csv", 0, "use a recorded movement as the hand's voluntary path", 0},
     {"columns", OPTION_COLUMNS, "T,X,Y", 0,

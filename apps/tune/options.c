@@ -30,7 +30,7 @@ static const char doc[] =
 enum { GAIN_MARGIN = 256, DELAY_MARGIN, HANDS, PASSIVE, PREFER, RANGE, POINTS_OPTION, TAPS_OPTION, CSV, PLOT, SEED };
 
 static const struct argp_option options[] = {
-    {"plant", 'p', "n|b|p|FILE", 0, "the device and its hand: n, b, p or a plant file", 0},
+    {"plant", 'p', "q|n|b|p|FILE", 0, "the device and its hand: q, n, b, p or a plant file", 0},
     {"config", 'c', "C.ini", 0, "the configuration to begin from (default: the plant's own)", 0},
     {"transition", 't', "LAW", 0, "the transition law (default: the configuration's)", 0},
     {"out", 'o', "TUNED.ini", 0, "write the configuration with the chosen gains", 0},
@@ -68,7 +68,7 @@ static int goal_of(const char *text) {
 }
 
 static void check_usage(struct argp_state *state) {
-  if (!arg.plant && !arg.config) argp_error(state, "--plant is needed: a device's plant file, or n, b, p");
+  if (!arg.plant && !arg.config) argp_error(state, "--plant is needed: a device's plant file, or q, n, b, p");
   if (arg.plot && !arg.csv) argp_error(state, "--plot needs --csv: it draws that file");
 }
 

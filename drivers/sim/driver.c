@@ -28,7 +28,7 @@ typedef struct device {
 } device;
 
 static ethd_status load_plant(const ethd_device_def *def, const ethd_setting *setting, ethd_plant *out, char *message) {
-  const char *plant = setting ? setting->value : "n";
+  const char *plant = setting ? setting->value : ETHD__PLANT;
   char *path = ethd__plant_path(plant, def->folder);
   ethd_status status = path ? ethd_plant_load(path, out, message) : ethd__no_memory(message, NULL);
   if (path && status == ETHD_E_FILE && !strpbrk(plant, "/.") && access(path, F_OK))

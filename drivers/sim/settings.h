@@ -30,7 +30,7 @@ extern const char *const ethd__sim_keys[]; /* ends with NULL */
 
 typedef struct ethd__sim_settings {
   double p[ETHD__SIM_PARAMS];
-  const ethd_setting *plant; /* NULL: plant n */
+  const ethd_setting *plant; /* NULL: ETHD__PLANT */
   uint32_t given;            /* bit i: p[i] is given */
   int32_t reading;           /* ETHD_READING_*, -1: as the plant says */
   bool no_finger;            /* the ring is empty: nothing presses, and no reading comes */

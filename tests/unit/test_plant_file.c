@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "ethd/config.h"
 #include "ethd/sim.h"
 #include "unit/rig.h"
 
@@ -92,6 +93,23 @@ START_TEST(test_p) {
                              0.0410,   82.39,   2.568,   1e4,    0.5,    6.224e-3, 0.45e-3, 1.001e-3, 77.51e-3,
                              14.89e-3, 0.5595,  0.2050,  0.4713, 0.2726, 0.0339,   0.0577};
   for (size_t i = 0; i < sizeof got / sizeof *got; i++) is(got[i], expected[i]);
+  ck_assert(plant.count_phase && plant.reference && plant.metrics_side && !plant.reading);
+}
+END_TEST
+
+/* The rotors of the paper's motors, 70 g cm^2, at the ratio that the counts tell, are a part of the motor side; what q.ini and
+   q.plant both say, they say alike. */
+START_TEST(test_q) {
+  load("q");
+  double ratio = 2 * PI / (4000 * plant.count);
+  ck_assert(ratio > 14 && ratio < 15 && plant.profile == ETHD_PROFILE_MINIMUM_JERK);
+  ck_assert_double_gt(plant.motor_mass, 70e-7 * ratio * ratio / (0.25 * 0.25));
+  ethd_config *config;
+  ck_assert_msg(ethd_config_load("apps/config/q.ini", &config, message) == ETHD_OK, "%s", message);
+  is(config->setup.dynamics.mass[0], plant.mass[0]);
+  is(config->setup.dynamics.mass[1], plant.mass[1]);
+  is(config->setup.finger_radius, plant.finger_radius);
+  ethd_config_free(config);
   ck_assert(plant.count_phase && plant.reference && plant.metrics_side && !plant.reading);
 }
 END_TEST
@@ -186,6 +204,7 @@ int main(void) {
   tcase_add_test(t, test_n);
   tcase_add_test(t, test_b);
   tcase_add_test(t, test_p);
+  tcase_add_test(t, test_q);
   tcase_add_test(t, test_refused);
   tcase_add_test(t, test_every_key_counts);
   tcase_add_test(t, test_no_plant);

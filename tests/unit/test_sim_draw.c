@@ -22,7 +22,7 @@ static void standard(const ethd_plant *p, const ethd_sim_tap *t, double speed, e
 }
 
 START_TEST(test_moments) {
-  static const char *const plants[] = {"n", "b", "p"};
+  static const char *const plants[] = {"n", "b", "p", "q"};
   char path[64], message[ETHD_MESSAGE_MAX];
   snprintf(path, sizeof path, "apps/config/%s.plant", plants[_i]);
   ethd_plant plant;
@@ -35,7 +35,8 @@ START_TEST(test_moments) {
     ethd_sim_draw(&plant, 11, k, 0.4, meet, &t);
     standard(&plant, &t, 0.4, meet, z);
     ck_assert(t.seed == 11 && t.tap == k && t.path.sample_count == 0);
-    ck_assert(t.path.speed == t.commanded && t.path.ramp_up == 0.08 && t.path.ramp_down == 0.03);
+    ck_assert(t.path.profile == plant.profile && t.path.ramp_up == 0.08 && t.path.ramp_down == 0.03);
+    ck_assert(plant.profile ? t.path.speed > t.commanded : t.path.speed == t.commanded);
     ck_assert(z[5] >= 0 && z[5] < 1);
     for (int i = 0; i < DRAWN; i++) {
       double c = z[i] - (i == 5 ? 0.5 : 0);
@@ -123,7 +124,7 @@ END_TEST
 int main(void) {
   Suite *suite = suite_create("sim_draw");
   TCase *t = tcase_create("sim_draw");
-  tcase_add_loop_test(t, test_moments, 0, 3);
+  tcase_add_loop_test(t, test_moments, 0, 4);
   tcase_add_test(t, test_key);
   tcase_add_test(t, test_speed_at_the_wall);
   tcase_add_test(t, test_extreme_movements);

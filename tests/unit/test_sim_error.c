@@ -67,8 +67,8 @@ static double difference(int ticks) {
 }
 
 START_TEST(test_error) {
-  static const char *const letters[] = {"n", "b", "p"}, *const laws[] = {"abrupt", "smooth", "offset"};
-  const char *letter = letters[_i % 3], *law = laws[_i / 3];
+  static const char *const letters[] = {"q", "n", "b", "p"}, *const laws[] = {"abrupt", "smooth", "offset"};
+  const char *letter = letters[_i % 4], *law = laws[_i / 4];
   double most = 0;
   int agree = 0;
   open_loop(letter, law, 1e-3, ETHD_SIM_GOLDEN, &coarse);
@@ -94,7 +94,7 @@ int main(void) {
   Suite *suite = suite_create("sim_error");
   TCase *t = tcase_create("sim_error");
   tcase_set_timeout(t, 60);
-  tcase_add_loop_test(t, test_error, 0, 9);
+  tcase_add_loop_test(t, test_error, 0, 12);
   suite_add_tcase(suite, t);
   return rig_run(suite);
 }
