@@ -179,7 +179,7 @@ refuse 2 'SHA256SUMS: No such file' "$study" --merge "$folder/station1" "$folder
 
 # ---- own words: printed as they can be read again; unknown names, places and letters are refused ----
 "$study" --words >"$folder/words.study" && "$study" "$folder/words.study" --plan >"$folder/out" 2>&1 || fail "--words: $(cat "$folder/out")"
-[ "$(wc -l <"$folder/words.study")" = 45 ] && grep -q '^keys_thanks = Space ends$' "$folder/words.study" || fail "--words: $(cat "$folder/words.study")"
+[ "$(wc -l <"$folder/words.study")" = 47 ] && grep -q '^keys_thanks = Space ends$' "$folder/words.study" || fail "--words: $(cat "$folder/words.study")"
 words() { # SECTION LINE PATTERN
   printf '[study]\nsurvey = on\n[%s]\n%b\n' "$1" "$2" >"$folder/own.study"
   refuse 2 "own.study:4: $1.$3" "$study" "$folder/own.study" --plan
@@ -309,6 +309,9 @@ bad 'bad.study:4: survey.q10: no key of this section; q1 to q9' '[study]\nsurvey
 bad 'bad.study:4: after.q2: stands there without the questions before it' '[before]\nq1 = Why?\n[after]\nq2 = Why?\n'
 bad 'bad.study:2: before.age: no key of this section; q1 to q9' '[before]\nage = Why?\n'
 bad 'bad.study:2: pages.welcome: no key of this section; consent1 to' '[pages]\nwelcome = hello\n'
+bad 'bad.study:2: words.tap: 191 bytes; at most 190 are allowed, any number in .pages.' "[words]\ntap = $(printf %191s | tr ' ' x)\n"
+bad 'bad.study:3: found "consent2", .section. or key = value is allowed' '[pages]\nconsent1 = a ; b\nconsent2\n'
+bad 'bad.study:3: pages.consent1: occurs twice' '[pages]\nconsent1 = a ; b\nconsent1 = c\n'
 bad 'bad.study:2: study.rest: found "-1"' '[study]\nrest = -1\n'
 bad 'bad.study:2: hand.source: found "paw", simulated|recorded|people|mouse' '[hand]\nsource = paw\n'
 unchanged "$folder/whole" "$folder/kept" "the session that all of this began with"

@@ -168,6 +168,21 @@ for tap in "$folder"/session/taps/*/; do
   "$BUILD/bin/ethd-replay" --verify "$tap" >"$folder/verify" 2>&1 || fail "$tap: $(cat "$folder/verify")"
 done
 
+# A text of several pages: it is agreed to on its last one, and nothing before is skipped.
+{ printf '[study]\nparticipants = 1\ntaps = 1\n[hand]\nsource = mouse\n[pages]\nconsent1 = '; for i in $(seq 700); do printf 'Sie nehmen freiwillig teil ; das ist Satz %d. ' "$i"; done; echo; } >"$folder/read.study"
+timeout 60 "$study" "$folder/read.study" --out "$folder/read" --screen=640x480 >"$folder/out" 2>"$folder/err" &
+run=$!
+press() { for name; do xdotool key "$name"; sleep 0.15; done; }
+agreed() { "$python3" -c 'import sqlite3, sys; sys.exit(not sqlite3.connect(f"file:{sys.argv[1]}?immutable=1", uri=True).execute("select 1 from event where event = ?", ["consent"]).fetchone())' "$folder/read/study.sqlite" 2>/dev/null; }
+for _ in $(seq 100); do grep -q '^screen' "$folder/out" && break; sleep 0.1; done
+press y space y BackSpace y
+agreed && fail "agreed on a page before the last"
+for _ in $(seq 40); do press space; done
+press y
+agreed || fail "not agreed on the last page"
+press Escape
+wait $run
+
 # How long frames take is said for any size; it is judged by nobody here.
 sh tests/stress/frames.sh 640x400 1 >"$folder/out" 2>&1
 grep -Eq '^frames 640x400 p50 +[0-9.]+ +p99 +[0-9.]+ +max +[0-9.]+ ms, [0-9]+ shown, [0-9]+ late ticks$' "$folder/out" ||

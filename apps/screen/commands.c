@@ -97,7 +97,7 @@ static bool has_plugins(const char *folder) {
   ethd_ini ini;
   bool has = false;
   if (!ethd_text_read(path, ETHD_INI_BYTES_MAX, &text, &length, message) &&
-      !ethd_ini_parse(text, length, path, "plugins.file", &ini, message)) {
+      !ethd_ini_parse(text, length, path, "plugins.file", NULL, &ini, message)) {
     has = ethd_ini_find(&ini, "plugins", "file") != NULL;
     ethd_ini_free(&ini);
   }

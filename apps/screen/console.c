@@ -131,11 +131,6 @@ static bool stopped(void *self, const char *why) {
 
 /* ---- a participant begins ---- */
 
-static void print_page(char *const paragraph[ETHD_STUDY_PARAGRAPHS]) {
-  for (int i = 0; i < ETHD_STUDY_PARAGRAPHS; i++)
-    if (paragraph[i]) puts(paragraph[i]);
-}
-
 /* Asks until a line is one of the two words or "stop". The second word may be NULL. */
 static ethd__wish choose(ethd__console *c, const char *const word[2], const ethd__wish wish[2]) {
   char line[ETHD_MESSAGE_MAX];
@@ -163,12 +158,12 @@ static ethd__wish meet(void *self, const ethd__meeting *meeting) {
     if (wish != ETHD_WISH_GO) return wish;
   }
   ethd__wish wish = ETHD_WISH_GO;
-  if (q->consent[0] && !meeting->consented) {
-    print_page(q->consent);
+  if (q->consent && !meeting->consented) {
+    puts(q->consent);
     puts("yes: I agree; no: I don't");
     wish = choose(c, (const char *const[]){"yes", "no"}, (const ethd__wish[]){ETHD_WISH_AGREE, ETHD_WISH_ABORT});
   }
-  if (wish == ETHD_WISH_GO || wish == ETHD_WISH_AGREE) print_page(q->instruction);
+  if (q->instruction && (wish == ETHD_WISH_GO || wish == ETHD_WISH_AGREE)) puts(q->instruction);
   return wish;
 }
 

@@ -10,24 +10,14 @@ static ethd_status check_text(const char *section, const char *key, const char *
   for (uint32_t letter; text && *text;) {
     size_t n = ethd__letter_of(text, &letter);
     if (!n) return ethd__say(message, ETHD_E_SYNTAX, "[%s] %s: a byte that isn't UTF-8", section, key);
-    if (letter != '\t' && !TTF_GlyphIsProvided32((TTF_Font *)font, letter)) /* SDL only lacks the const */
+    if (letter != '\t' && letter != '\n' &&
+        !TTF_GlyphIsProvided32((TTF_Font *)font, letter)) /* SDL only lacks the const */
       return ethd__say(message, ETHD_E_RANGE,
                        "[%s] %s: the font %s has no letter \"%.*s\" (U+%04X); ETHD_FONT names another font file",
                        section, key, TTF_FontFaceFamilyName(font), (int)n, text, (unsigned)letter);
     text += n;
   }
   return ETHD_OK;
-}
-
-/* text[0] is "consent1" and the like. */
-static ethd_status check_list(const char *name, char *const *text, int count, const TTF_Font *font, char *message) {
-  ethd_status status = ETHD_OK;
-  for (int i = 0; !status && i < count; i++) {
-    char key[24];
-    snprintf(key, sizeof key, "%s%d", name, i + 1);
-    status = check_text("pages", key, text[i], font, message);
-  }
-  return status;
 }
 
 static ethd_status check_questions(const ethd__questionnaire *q, ethd__asking when, const TTF_Font *font,
@@ -45,8 +35,8 @@ static ethd_status check_questions(const ethd__questionnaire *q, ethd__asking wh
 }
 
 ethd_status ethd__letters_check(const ethd__questionnaire *q, const TTF_Font *font, char message[ETHD_MESSAGE_MAX]) {
-  ethd_status status = check_list("consent", q->consent, ETHD_STUDY_PARAGRAPHS, font, message);
-  if (!status) status = check_list("instruction", q->instruction, ETHD_STUDY_PARAGRAPHS, font, message);
+  ethd_status status = check_text("pages", "consent", q->consent, font, message);
+  if (!status) status = check_text("pages", "instruction", q->instruction, font, message);
   for (int i = 0; !status && i < ETHD_ASKINGS; i++) status = check_questions(q, (ethd__asking)i, font, message);
   for (int i = 0; !status && i < ETHD_PHRASES; i++)
     status = check_text("words", ethd__phrases[i].key, q->phrase[i], font, message);

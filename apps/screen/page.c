@@ -29,18 +29,35 @@ static size_t bytes_of(const char *text, int letters) {
   return n;
 }
 
-/* Bytes of the text's first line: it ends between words, or within one that is longer than a line. */
+/* Bytes of the text's first line, at most what a shape holds: it ends at a newline, between words, or within one that is
+   longer than a line. */
 static size_t line_of(const ethd__window *w, int size, const char *text) {
+  char head[sizeof w->shape->text];
   int extent, letters = 0;
-  if (TTF_MeasureUTF8(w->font[size], text, (int)(WIDE * w->width), &extent, &letters)) return strlen(text);
-  size_t fits = bytes_of(text, letters > 0 ? letters : 1), n = fits;
-  if (!text[fits]) return fits;
+  size_t most = strcspn(text, "\n"), room = sizeof head - 1;
+  if (most > room)
+    for (most = room; most && (text[most] & 0xc0) == 0x80;) most--;
+  snprintf(head, sizeof head, "%.*s", (int)most, text);
+  if (TTF_MeasureUTF8(w->font[size], head, (int)(WIDE * w->width), &extent, &letters)) return most;
+  size_t fits = bytes_of(head, letters > 0 ? letters : 1), n = fits;
+  if (!text[fits] || text[fits] == '\n') return fits;
   while (n && text[n] != ' ') n--;
   return n ? n : fits;
 }
 
+/* A picture of letters with accents can be a pixel higher than the font says. */
 static double line_height(const ethd__window *w, int size) {
-  return fmax(TTF_FontLineSkip(w->font[size]), TTF_FontHeight(w->font[size]));
+  return fmax(TTF_FontLineSkip(w->font[size]), TTF_FontHeight(w->font[size])) + 1;
+}
+
+/* Goes behind a line of n bytes. Returns its height, px, with the gap to the next paragraph. */
+static double pass_line(const ethd__window *w, int size, const char **at, size_t n) {
+  double height = line_height(w, size);
+  *at += n;
+  *at += strspn(*at, " ");
+  if (**at != '\n') return height;
+  ++*at;
+  return (1 + GAP) * height;
 }
 
 /* Breaks the text into lines from y down; draws them where `draws`. The text's height, px. */
@@ -51,9 +68,7 @@ static double put(ethd__window *w, const ethd__paragraph *p, double y, bool draw
     size_t n = line_of(w, p->size, at);
     snprintf(line, sizeof line, "%.*s", (int)n, at);
     if (draws) ethd__window_text(w, p->size, w->width / 2.0, y + height, line, p->colour);
-    height += line_height(w, p->size);
-    at += n;
-    at += strspn(at, " ");
+    height += pass_line(w, p->size, &at, n);
   }
   return height;
 }
@@ -78,6 +93,16 @@ static page_room measure(ethd__window *w, const ethd__page *page) {
     room.height += GAP * line_height(w, page->paragraph[i].size);
   }
   return room;
+}
+
+size_t ethd__page_room(ethd__window *w, const ethd__page *page, const char *text) {
+  const char *at = text;
+  if (w->shrink != 1) ethd__window_shrink(w, 1);
+  page_room room = measure(w, page);
+  double line = line_height(w, ETHD_TEXT_SMALL), left = room.bottom - room.top - room.height - 2 * GAP * line;
+  do left -= pass_line(w, ETHD_TEXT_SMALL, &at, line_of(w, ETHD_TEXT_SMALL, at));
+  while (*at && left >= line);
+  return (size_t)(at - text);
 }
 
 static uint64_t mix(uint64_t sum, const char *text) {

@@ -93,7 +93,7 @@ static void block(void *self, const char *participant, const ethd__turn *turn, b
   snprintf(s->title, sizeof s->title, "%s   %s%s%s", participant, part, turn->block.training ? ", " : "",
            turn->block.training ? WORDS(PRACTICE) : "");
   fill(s, ETHD_PHRASE_SPEED, "%.2g", &s->speed.centre, 1, speed, sizeof speed);
-  s->feedback[0] = s->achieved[0] = s->checked[0] = 0;
+  s->feedback[0] = s->achieved[0] = 0;
   s->good = false;
   ethd__page page = {.title = s->title, .keys = WORDS(KEYS_GO)};
   if (rest) ethd__page_add(&page, ETHD_TEXT_LARGE, WORDS(REST), ethd__green);
@@ -145,7 +145,6 @@ void ethd__screen_waiting(ethd__screen *s, bool over, ethd_vec finger, double se
   ethd__page page = {.title = s->title, .keys = keys, .below = ethd__draw_floor(s)};
   ethd__page_add(&page, ETHD_TEXT_LARGE, s->feedback, s->good ? ethd__green : ethd__red);
   ethd__page_add(&page, ETHD_TEXT_SMALL, s->achieved, s->good ? ethd__green : ethd__red);
-  ethd__page_add(&page, ETHD_TEXT_SMALL, s->checked, ethd__grey);
   if (!over) ethd__page_add(&page, ETHD_TEXT_SMALL, WORDS(READY), ethd__white);
   ethd__page_draw(&s->window, &page);
   ethd__draw_room(s, finger, seconds);
@@ -204,12 +203,13 @@ static void verdict(void *self, const char *participant, const ethd__taken *take
   fill(s, ETHD_PHRASE_COUNT, "%.0f", done, 2, count, sizeof count);
   snprintf(s->feedback, sizeof s->feedback, "%s   %s", ethd__screen_words(s, ethd__advised(m->reason, tally->checked)),
            count);
-  s->achieved[0] = s->checked[0] = 0;
-  const double checked[] = {tally->accepted, tally->rejected};
-  if (tally->accepted + tally->rejected)
-    fill(s, ETHD_PHRASE_CHECKED, "%.0f", checked, 2, s->checked, sizeof s->checked);
+  s->achieved[0] = 0;
   const double speeds[] = {v, speed->centre - speed->band, speed->centre + speed->band};
   if (isfinite(v)) fill(s, ETHD_PHRASE_ACHIEVED, "%.2f", speeds, 3, s->achieved, sizeof s->achieved);
+  const double checked[] = {tally->accepted, tally->rejected};
+  size_t n = strlen(strcat(s->achieved, *s->achieved ? "   " : ""));
+  if (tally->accepted + tally->rejected)
+    fill(s, ETHD_PHRASE_CHECKED, "%.0f", checked, 2, s->achieved + n, sizeof s->achieved - n);
 }
 
 /* ---- a device that has stopped itself ---- */

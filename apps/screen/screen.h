@@ -22,8 +22,7 @@ typedef struct ethd__screen {
   ethd_vec avatar;   /* as drawn last */
   ethd__speed speed; /* of the present block */
   char title[200];
-  char feedback[200], achieved[200]; /* of the last tap: how it was, how fast; "": none yet */
-  char checked[200];                 /* how many taps the experimenter accepted and rejected */
+  char feedback[200], achieved[250]; /* of the last tap: how it was, how fast, and what was checked; "": none yet */
   ethd_vec from;                     /* where the finger was as the tap began */
   bool left;                         /* it has left the place since */
   int pending;                       /* a key that ended a tap, and is still to be heard */
@@ -71,6 +70,10 @@ void ethd__screen_moved(void *screen, int64_t ns);
    window.key, or somebody stopped. */
 bool ethd__screen_type(ethd__screen *screen, const ethd__page *page, char *line, size_t room);
 
+/* Shows a text of any length, as many pages as it needs, which Space and Backspace turn, until one of `ends` is pressed on
+   the last one, whose keys these are, or somebody stops, which gives SDLK_ESCAPE. */
+int ethd__screen_read(ethd__screen *screen, const char *text, const char *title, const char *keys, const int *ends);
+
 /* Parts of the front, see study/front.h. */
 ethd__wish ethd__screen_meet(void *screen, const ethd__meeting *meeting);
 int ethd__screen_ask(void *screen, const ethd__asked *asked);
@@ -81,8 +84,6 @@ void ethd__screen_waiting(ethd__screen *screen, bool over, ethd_vec finger, doub
 /* Their pages; `typed` is what stands on the line so far, `text` room for words. */
 void ethd__page_of_hand_over(const ethd__questionnaire *q, const ethd__meeting *meeting, const char *typed,
                              ethd__page *out, char text[256]);
-void ethd__page_of_words(char *const paragraph[ETHD_STUDY_PARAGRAPHS], const char *title, const char *keys,
-                         ethd__page *out);
 void ethd__page_of_question(const ethd__question *question, int chosen, ethd__page *out,
                             char text[ETHD_STUDY_ANSWERS][256]);
 void ethd__page_of_answers(const ethd__questionnaire *q, const ethd__asked *asked, ethd__page *out,

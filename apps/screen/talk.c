@@ -32,18 +32,9 @@ static ethd__wish hand_over(ethd__screen *s, const ethd__meeting *meeting) {
   return ETHD_WISH_GO;
 }
 
-void ethd__page_of_words(char *const paragraph[ETHD_STUDY_PARAGRAPHS], const char *title, const char *keys,
-                         ethd__page *out) {
-  *out = (ethd__page){.title = title, .keys = keys};
-  for (int i = 0; i < ETHD_STUDY_PARAGRAPHS; i++)
-    ethd__page_add(out, ETHD_TEXT_SMALL, paragraph[i] ? paragraph[i] : "", ethd__white);
-}
-
 static ethd__wish consent(ethd__screen *s, const char *participant) {
-  ethd__page page;
-  ethd__page_of_words(s->protocol->questionnaire.consent, participant, ethd__screen_words(s, ETHD_PHRASE_KEYS_CONSENT),
-                      &page);
-  switch (ethd__screen_page(s, &page, (const int[]){SDLK_y, SDLK_n, 0})) {
+  switch (ethd__screen_read(s, s->protocol->questionnaire.consent, participant,
+                            ethd__screen_words(s, ETHD_PHRASE_KEYS_CONSENT), (const int[]){SDLK_y, SDLK_n, 0})) {
   case SDLK_y: return ETHD_WISH_AGREE;
   case SDLK_n: return ETHD_WISH_ABORT;
   default: return ETHD_WISH_STOP;
@@ -55,11 +46,10 @@ ethd__wish ethd__screen_meet(void *self, const ethd__meeting *meeting) {
   const ethd__questionnaire *q = &s->protocol->questionnaire;
   snprintf(s->title, sizeof s->title, "%s", meeting->participant);
   ethd__wish wish = meeting->handed_over ? hand_over(s, meeting) : ETHD_WISH_GO;
-  ethd__page page;
-  if (wish == ETHD_WISH_GO && q->consent[0] && !meeting->consented) wish = consent(s, meeting->participant);
-  if ((wish != ETHD_WISH_GO && wish != ETHD_WISH_AGREE) || !q->instruction[0]) return wish;
-  ethd__page_of_words(q->instruction, meeting->participant, ethd__screen_words(s, ETHD_PHRASE_KEYS_GO), &page);
-  return ethd__screen_page(s, &page, (const int[]){SDLK_SPACE, SDLK_RETURN, 0}) == SDLK_ESCAPE &&
+  if (wish == ETHD_WISH_GO && q->consent && !meeting->consented) wish = consent(s, meeting->participant);
+  if ((wish != ETHD_WISH_GO && wish != ETHD_WISH_AGREE) || !q->instruction) return wish;
+  return ethd__screen_read(s, q->instruction, meeting->participant, ethd__screen_words(s, ETHD_PHRASE_KEYS_GO),
+                           (const int[]){SDLK_SPACE, SDLK_RETURN, 0}) == SDLK_ESCAPE &&
                  wish != ETHD_WISH_AGREE
              ? ETHD_WISH_STOP
              : wish; /* a consent that was given is kept, and the stop heard next */

@@ -18,6 +18,7 @@
   X(PART, "part", "part {1} of {2}")                                                                             \
   X(PRACTICE, "practice", "practice")                                                                            \
   X(REST, "rest", "Time for a rest. Go on when you like.")                                                       \
+  X(PAGE, "page", "page {1} of {2}")                                                                             \
   X(TASK, "task", "Tap once on the green wall at the left,")                                                     \
   X(SPEED, "speed", "as fast as the white mark will move: {1} m/s")                                              \
   X(READY, "ready", "Bring the circle to the grey line, and wait")                                               \
@@ -46,6 +47,7 @@
   X(GRAZING, "grazing", "only grazed: press for a moment")                                                       \
   X(DOUBLE, "double", "tapped twice: once is enough")                                                            \
   X(KEYS_GO, "keys_go", "Space goes on   Esc stops")                                                             \
+  X(KEYS_PAGE, "keys_page", "Space next page   Backspace page before   Esc stops")                               \
   X(KEYS_WAIT, "keys_wait", "P pause   N note   A end this participant   Esc stop")                              \
   X(KEYS_CHECK, "keys_check", "V accept this tap   R reject it   U undo")                                        \
   X(KEYS_NOW, "keys_now", "Space now")                                                                           \

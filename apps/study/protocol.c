@@ -136,7 +136,7 @@ ethd_status ethd__protocol_parse(const char *text, size_t length, const char *na
                                  ethd__protocol *out, char message[ETHD_MESSAGE_MAX]) {
   ethd_ini ini;
   *out = (ethd__protocol){0};
-  ethd_status status = ethd_ini_parse(text, length, name, NULL, &ini, message);
+  ethd_status status = ethd_ini_parse(text, length, name, NULL, " before survey after pages words ", &ini, message);
   if (status) return status;
   status = defaults(out);
   out->path = strdup(name);

@@ -46,7 +46,7 @@
 #define ETHD_STUDY_GAINS 6 /* keys of a grid */
 #define ETHD_STUDY_PEOPLE 1000000u
 #define ETHD_STUDY_POINTS 100000u /* of a grid */
-#define ETHD_STUDY_TEXT_MAX ((size_t)1 << 16)
+#define ETHD_STUDY_TEXT_MAX ((size_t)1 << 20)
 
 typedef enum ethd__order { ETHD_ORDER_PAPER, ETHD_ORDER_RANDOM, ETHD_ORDER_LATIN } ethd__order;
 

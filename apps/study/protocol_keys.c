@@ -227,19 +227,32 @@ static ethd_status check_places(const ethd__entry *e, const char *instead_of) {
                             instead_of);
 }
 
+static ethd_status add_paragraph(const ethd__entry *e, char **at) {
+  char *text = NULL;
+  int n = asprintf(&text, "%s%s%s", *at ? *at : "", *at ? "\n" : "", e->key->value);
+  if (n < 0) return ethd__entry_refuse(e, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  free(*at);
+  *at = text;
+  return ETHD_OK;
+}
+
 static ethd_status set_own_words(const ethd__entry *e) {
   char **at = ethd__questionnaire_at(&e->out->questionnaire, e->key->section, e->key->key);
   const ethd__asking when = ethd__asking_of(e->key->section);
-  bool asked = when < ETHD_ASKINGS, phrase = !strcmp(e->key->section, "words");
+  bool asked = when < ETHD_ASKINGS, phrase = !strcmp(e->key->section, "words"), page = !asked && !phrase;
   if (!at)
     return ethd__entry_refuse(e, ETHD_E_UNKNOWN, "no key of this section; %s are allowed",
                               asked    ? "q1 to q9, q1_answers to q9_answers"
                               : phrase ? "those that ethd-study --words prints"
-                                       : "consent1 to consent9, instruction1 to instruction9");
+                                       : "consent1 to consent99, instruction1 to instruction99");
+  size_t length = strlen(e->key->value);
+  if (!page && length > ETHD_STUDY_WORDS_MAX)
+    return ethd__entry_refuse(e, ETHD_E_RANGE, "%zu bytes; at most %d are allowed, any number in [pages]", length,
+                              ETHD_STUDY_WORDS_MAX);
   ethd_status status = check_words(e);
   if (!status && phrase) status = check_places(e, ethd__phrases[at - e->out->questionnaire.phrase].words);
   if (asked) e->out->questionnaire.question[when][e->key->key[1] - '1'].line = e->key->line;
-  return status ? status : set_text(e, NULL, at);
+  return status ? status : page ? add_paragraph(e, at) : set_text(e, NULL, at);
 }
 
 static ethd_status unknown_key(const ethd__entry *e) {

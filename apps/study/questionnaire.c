@@ -89,23 +89,24 @@ bool ethd__letter_goes_left(uint32_t c) {
 
 /* ---- keys ---- */
 
-/* Returns the digit 1 to 9 in a key like "q3_answers"; 0 if the key has another form. */
-static int number_of(const char *key, const char *name, const char *behind) {
-  size_t n = strlen(name);
-  return strncmp(key, name, n) == 0 && key[n] >= '1' && key[n] <= '9' && !strcmp(key + n + 1, behind) ? key[n] - '0'
-                                                                                                      : 0;
+/* Returns the number up to `most` in a key like "q3_answers"; 0 if the key has another form. */
+static int number_of(const char *key, const char *name, const char *behind, int most) {
+  size_t n = strlen(name), digits = strncmp(key, name, n) ? 0 : strspn(key + n, "0123456789");
+  if (digits < 1 || digits > 2 || key[n] == '0' || strcmp(key + n + digits, behind) != 0) return 0;
+  int number = atoi(key + n);
+  return number <= most ? number : 0;
 }
 
 char **ethd__questionnaire_at(ethd__questionnaire *q, const char *section, const char *key) {
   int k;
   ethd__asking when = ethd__asking_of(section);
   if (when < ETHD_ASKINGS) {
-    if ((k = number_of(key, "q", ""))) return &q->question[when][k - 1].text;
-    if ((k = number_of(key, "q", "_answers"))) return &q->question[when][k - 1].answers;
+    if ((k = number_of(key, "q", "", ETHD_STUDY_QUESTIONS))) return &q->question[when][k - 1].text;
+    if ((k = number_of(key, "q", "_answers", ETHD_STUDY_QUESTIONS))) return &q->question[when][k - 1].answers;
   }
   if (!strcmp(section, "pages")) {
-    if ((k = number_of(key, "consent", ""))) return &q->consent[k - 1];
-    if ((k = number_of(key, "instruction", ""))) return &q->instruction[k - 1];
+    if (number_of(key, "consent", "", 99)) return &q->consent;
+    if (number_of(key, "instruction", "", 99)) return &q->instruction;
   }
   for (k = 0; !strcmp(section, "words") && k < ETHD_PHRASES; k++)
     if (!strcmp(key, ethd__phrases[k].key)) return &q->phrase[k];
@@ -146,10 +147,8 @@ void ethd__questionnaire_free(ethd__questionnaire *q) {
     free(question->text);
     free(question->answers);
   }
-  for (int i = 0; i < ETHD_STUDY_PARAGRAPHS; i++) {
-    free(q->consent[i]);
-    free(q->instruction[i]);
-  }
+  free(q->consent);
+  free(q->instruction);
   for (int i = 0; i < ETHD_PHRASES; i++) free(q->phrase[i]);
   *q = (ethd__questionnaire){0};
 }

@@ -6,8 +6,9 @@
 
    Those of [survey] are asked after each block, the others once, before the first tap and after the last one.
    Questions are q1 to q9 without a gap; answers are numbered from 1, two to nine of them, five bare numbers without
-   q1_answers. "q1_answers = text" asks for a line in the participant's own words. A page has up to nine paragraphs,
-   consent1 to consent9 and instruction1 to instruction9. */
+   q1_answers. "q1_answers = text" asks for a line in the participant's own words. Consent and instruction are
+   paragraphs, consent1 to consent99 and instruction1 to instruction99, in the order of the file; each is a line of any
+   length. Other texts have at most ETHD_STUDY_WORDS_MAX bytes. " ;" is no comment in these sections. */
 #ifndef ETHD__APPS_STUDY_QUESTIONNAIRE_H
 #define ETHD__APPS_STUDY_QUESTIONNAIRE_H
 
@@ -18,7 +19,7 @@
 
 #define ETHD_STUDY_QUESTIONS 9
 #define ETHD_STUDY_ANSWERS 9
-#define ETHD_STUDY_PARAGRAPHS 9
+#define ETHD_STUDY_WORDS_MAX 190
 
 typedef struct ethd__question {
   char *text, *answers; /* answers: "this|that", blanks around the bars; "text"; NULL: the numbers 1 to 5 */
@@ -33,9 +34,9 @@ extern const char *const ethd__asking_sections[ETHD_ASKINGS], *const ethd__askin
 
 typedef struct ethd__questionnaire {
   ethd__question question[ETHD_ASKINGS][ETHD_STUDY_QUESTIONS];
-  char *consent[ETHD_STUDY_PARAGRAPHS], *instruction[ETHD_STUDY_PARAGRAPHS];
-  char *phrase[ETHD_PHRASES]; /* NULL: the default */
-  bool own;                   /* [survey] has questions of the study's own, not the paper's */
+  char *consent, *instruction; /* paragraphs, a line each; NULL: none */
+  char *phrase[ETHD_PHRASES];  /* NULL: the default */
+  bool own;                    /* [survey] has questions of the study's own, not the paper's */
 } ethd__questionnaire;
 
 /* How many questions there are, and numbered answers to one of them: 0 where words are asked for. [any] */

@@ -191,7 +191,7 @@ ethd_status ethd__calibration_parse(const char *text, size_t length, const char 
   ethd__calibration got = ethd__calibration_default();
   calibration_source r = {name, message, &got, 0};
   ethd_ini ini = {0};
-  ethd_status status = ethd_ini_parse(text, length, name, NULL, &ini, message);
+  ethd_status status = ethd_ini_parse(text, length, name, NULL, NULL, &ini, message);
   if (status) return status;
   status = read_all(&r, &ini);
   ethd_ini_free(&ini);

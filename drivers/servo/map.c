@@ -120,7 +120,7 @@ static ethd_status fill(const ethd__servo_source *s, ethd__servo_map *map) {
 ethd_status ethd__servo_map_parse(const char *text, size_t length, const char *name, ethd__servo_map *out,
                                   char message[ETHD_MESSAGE_MAX]) {
   ethd_ini ini;
-  ethd_status status = ethd_ini_parse(text, length, name, NULL, &ini, message);
+  ethd_status status = ethd_ini_parse(text, length, name, NULL, NULL, &ini, message);
   if (status) return status;
   const ethd__servo_source source = {&ini, name, message};
   status = fill(&source, out);

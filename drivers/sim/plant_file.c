@@ -60,7 +60,7 @@ ethd_status ethd__plant_read(const char *path, const char *name, ethd_plant *out
   ethd_ini ini;
   ethd_status status = ethd_text_read(path, BYTES_MAX, &text, &length, message);
   if (status) return status;
-  status = ethd_ini_parse(text, length, name, NULL, &ini, message);
+  status = ethd_ini_parse(text, length, name, NULL, NULL, &ini, message);
   free(text);
   if (status) return status;
   status = fill(name, &ini, out, message);

@@ -38,7 +38,7 @@ static void grow_scene(FILE *out, int rows) {
 static int read_ini(const char *text, size_t length) {
   char message[ETHD_MESSAGE_MAX] = "";
   ethd_ini ini;
-  ethd_status status = ethd_ini_parse(text, length, "x", "plugins.file", &ini, message);
+  ethd_status status = ethd_ini_parse(text, length, "x", "plugins.file", NULL, &ini, message);
   if (status == ETHD_OK) ethd_ini_free(&ini);
   return judged(status, message);
 }

@@ -10,7 +10,7 @@
 #include "study/progress.h"
 #include "unit/suite.h"
 
-static const int sizes[][2] = {{320, 200}, {640, 400}, {720, 1280}, {1366, 768}, {3840, 2160}};
+static const int sizes[][2] = {{320, 200}, {640, 480}, {720, 1280}, {1366, 768}, {3840, 2160}};
 enum { SIZES = sizeof sizes / sizeof *sizes };
 
 static ethd__screen screen;
@@ -124,18 +124,95 @@ static void check_questions(void) {
 }
 
 static void check_words(void) {
-  char *paragraph[ETHD_STUDY_PARAGRAPHS];
   ethd__page page;
-  for (int i = 0; i < ETHD_STUDY_PARAGRAPHS; i++)
-    paragraph[i] =
-        (char *)"Sie nehmen freiwillig teil und können jederzeit ohne Angabe von Gründen aufhören; dann werden "
-                "Ihre Daten nicht ausgewertet. Es dauert etwa eine Stunde, mit Pausen, wann Sie mögen.";
-  ethd__page_of_words(paragraph, title, "Y I agree   N I don't   Esc stops", &page);
-  draw("consent", &page, 11);
   char text[256];
   const ethd__meeting meeting = {"P12", true, false, true};
   ethd__page_of_hand_over(&protocol.questionnaire, &meeting, "P1", &page, text);
   draw("hand-over", &page, 5);
+}
+
+/* ---- prose ---- */
+
+/* Adds what isn't blank. */
+static void squeeze(char *out, const char *text) {
+  char *to = out + strlen(out);
+  for (; *text; text++)
+    if (!strchr(" \n", *text)) *to++ = *text;
+  *to = 0;
+}
+
+/* The white texts of this frame: the title and the keys are grey. */
+static void keep_prose(char *out) {
+  const ethd__window *w = &screen.window;
+  for (size_t i = 0; i < w->shape_before; i++)
+    if (w->shape[i].colour.r == 255) squeeze(out, w->shape[i].text);
+}
+
+/* Prose for a study: languages, " ;" and "#", a word that is longer than any line. */
+static char *prose_of(size_t bytes) {
+  static const char *const sentences[] = {
+      "Touchez le mur vert ; puis revenez à la ligne grise # et attendez. ",
+      "Sie nehmen freiwillig teil und können jederzeit ohne Angabe von Gründen aufhören. ",
+      "Коснитесь зелёной стены один раз, затем вернитесь к серой линии и подождите. ",
+      "Αγγίξτε μία φορά τον πράσινο τοίχο και περιμένετε. ",
+      "Donaudampfschifffahrtsgesellschaftskapitänsmützenabzeichenverordnungsdonaudampfschifffahrtsgesellschaft\n",
+  };
+  char *text = calloc(1, bytes + 256);
+  for (size_t n = 0, i = 0; n < bytes; n = strlen(text), i++) strcat(text + n, sentences[i * i % 7 % 5]);
+  return text;
+}
+
+static void read_all(const char *name, const char *text) {
+  const ethd__page page = {.title = "P12   page 100 of 100",
+                           .keys = "Space next page   Backspace page before   Esc stops"};
+  char *seen = calloc(1, strlen(text) + 1), *asked = calloc(1, strlen(text) + 1);
+  size_t pages = 0;
+  for (const char *at = text; *at; pages++) {
+    size_t n = ethd__page_room(&screen.window, &page, at);
+    char *part = strndup(at, n);
+    ethd__page shown = page;
+    ethd__page_add(&shown, ETHD_TEXT_SMALL, part, ethd__white);
+    draw(pages == 1 ? name : "prose", &shown, 3);
+    ck_assert_msg(screen.window.shrink == 1, "%s: page %zu has smaller letters", name, pages);
+    keep_prose(seen);
+    free(part);
+    at += n;
+  }
+  squeeze(asked, text);
+  ck_assert_msg(!strcmp(seen, asked), "%s at %d x %d: lost", name, screen.window.width, screen.window.height);
+  free(seen);
+  free(asked);
+}
+
+/* As a study file gives it: nothing of it is cut, wherever it stands, and no page loses a letter. */
+TEST(test_prose_loses_nothing) {
+  char *text = prose_of(100000), message[ETHD_MESSAGE_MAX], *file, *line = text;
+  size_t length;
+  FILE *out = open_memstream(&file, &length);
+  fputs("[pages]\n", out);
+  for (int i = 0; i < 98; i++)
+    fprintf(out, "instruction%d = %.*s\n", i + 1, (int)strcspn(line, "\n"), line), line += strcspn(line, "\n") + 1;
+  for (char *p = line; *p; p++)
+    if (*p == '\n') *p = ' '; /* the last paragraph is most of it */
+  fprintf(out, "instruction99 = %s\n[study]\nname = long ; a comment\n", line);
+  ck_assert(!fclose(out) && strlen(line) > 50000);
+  ck_assert_msg(!ethd__protocol_parse(file, length, "a.study", ".", &protocol, message), "%s", message);
+  char *read = calloc(1, length), *written = calloc(1, length);
+  squeeze(read, protocol.questionnaire.instruction);
+  squeeze(written, text);
+  ck_assert(!strcmp(read, written));
+  ck_assert_str_eq(protocol.name, "long");
+  for (int i = 0; i < SIZES; i++) {
+    open_at(sizes[i][0], sizes[i][1]);
+    ck_assert_msg(!ethd__letters_check(&protocol.questionnaire, screen.window.font[0], message), "%s", message);
+    read_all("prose2", protocol.questionnaire.instruction);
+    close_it();
+  }
+  ethd__protocol_free(&protocol);
+  free(read);
+  free(written);
+  free(text);
+  free(file);
 }
 
 TEST(test_no_text_lies_on_another) {
@@ -202,7 +279,8 @@ static void meet_in_german(void) {
   const ethd__meeting meeting = {"P12", true, false, true};
   ethd__page page;
   char text[256];
-  ethd__page_of_words(q->consent, screen.title, ethd__screen_words(&screen, ETHD_PHRASE_KEYS_CONSENT), &page);
+  page = (ethd__page){.title = screen.title, .keys = ethd__screen_words(&screen, ETHD_PHRASE_KEYS_CONSENT)};
+  ethd__page_add(&page, ETHD_TEXT_SMALL, q->consent, ethd__white);
   draw_german("german-consent", &page, 4);
   ethd__page_of_hand_over(q, &meeting, "P1", &page, text);
   draw_german("german-hand-over", &page, 5);
@@ -210,7 +288,7 @@ static void meet_in_german(void) {
 
 TEST(test_a_study_in_german) {
   static const char *const said[] = {"gültig   (2 von 3)\n",
-                                     "0.43 m/s, es zählen 0.32 bis 0.48 m/s\n",
+                                     "0.43 m/s, es zählen 0.32 bis 0.48 m/s   bestätigt: 1, verworfen: 1\n",
                                      "Den Kreis zur grauen Linie führen und warten\n",
                                      "> 2   natürlich <\n",
                                      "4   Die Wand fühlte sich weich an.\n",
@@ -242,7 +320,7 @@ TEST(test_letters_that_the_font_lacks) {
     const char *study, *message;
   } cases[] = {
       {"[words]\ntap = \xe6\x95\xb2\n", "[words] tap: the font DejaVu Sans has no letter \"\xe6\x95\xb2\" (U+6572)"},
-      {"[pages]\nconsent2 = a\xf0\x9f\x91\x86\n", "[pages] consent2: the font DejaVu Sans has no letter"},
+      {"[pages]\nconsent2 = a\xf0\x9f\x91\x86\n", "[pages] consent: the font DejaVu Sans has no letter"},
       {"[study]\nsurvey = on\n[survey]\nq1 = \xe4\xbd\xa0?\n", "[survey] q1: the font"},
       {"[study]\nsurvey = on\n[survey]\nq1 = a\nq1_answers = b | \xe4\xbd\xa0\n", "[survey] q1_answers: the font"}};
   char message[ETHD_MESSAGE_MAX];

@@ -160,7 +160,7 @@ static ethd_status parse(config_reading r, const ethd_config_source *s, ethd_con
   if (!r.whole) return no_memory(&r);
   r.whole->received = r.received;
   ethd_status status = fill(&r.whole->config, s->text, s->length, s->path, s->folder) ? ETHD_OK : no_memory(&r);
-  if (!status) status = ethd_ini_parse(s->text, s->length, r.name, "plugins.file", &r.whole->ini, r.message);
+  if (!status) status = ethd_ini_parse(s->text, s->length, r.name, "plugins.file", NULL, &r.whole->ini, r.message);
   if (!status) status = read_keys(&r);
   if (status)
     ethd_config_free(&r.whole->config);

@@ -2,6 +2,7 @@
 
 #include <ini.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +14,7 @@
 typedef struct feed {
   const char *at, *end;
   int line;
-  const char *name, *repeats;
+  const char *name, *repeats, *prose;
   ethd_ini *out;
   ethd_status status;
   char *message;
@@ -113,23 +114,16 @@ static void check_line(feed *f, key_span s) {
            ethd__quote(s.text, s.length, quote));
 }
 
-/* Gives inih its lines in place of fgets. It can't take a line that starts in the first column for a continuation. */
-static char *read_line(char *out, int room, void *user) {
-  feed *f = user;
-  if (f->status || f->at >= f->end) return NULL;
-  key_span s = next_line(f);
-  check_line(f, s);
-  s = uncommented(s);
-  if (!f->status && s.length + 1 > (size_t)room)
-    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a line of %zu characters, this build of inih keeps %d", f->name, f->line, s.length,
-           room - 1);
-  if (f->status) return NULL;
-  memcpy(out, s.text, s.length);
-  out[s.length] = 0;
-  return out;
+/* Returns whether the line is a key in a section of prose, which inih doesn't see. */
+static bool is_prose(const feed *f, key_span s) {
+  char section[NAME_MAX_LENGTH + 3];
+  s = trimmed(s);
+  if (!f->prose || !f->out->section_count || !s.length || strchr("[#;", *s.text)) return false;
+  snprintf(section, sizeof section, " %s ", f->out->sections[f->out->section_count - 1].name);
+  return strstr(f->prose, section) != NULL;
 }
 
-/* ---- keys, as inih hands them on ---- */
+/* ---- keys, as inih hands them on, or lines of prose ---- */
 
 static bool repeatable(const feed *f, const char *section, const char *key) {
   size_t n = strlen(section);
@@ -162,9 +156,48 @@ static int take_key(void *user, const char *section, const char *key, const char
   return !f->status;
 }
 
-ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, const char *repeats, ethd_ini *out,
-                           char message[ETHD_MESSAGE_MAX]) {
-  feed f = {text, text + length, 0, name, repeats, out, ETHD_OK, message};
+static void take_prose(feed *f, key_span s) {
+  char quote[ETHD_QUOTE_MAX];
+  check_text(f, s);
+  if (!f->status && !is_pair(s))
+    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: found %s, [section] or key = value is allowed", f->name, f->line,
+           ethd__quote(s.text, s.length, quote));
+  if (f->status) return;
+  size_t equals = (size_t)((const char *)memchr(s.text, '=', s.length) - s.text);
+  key_span left = trimmed((key_span){s.text, equals}),
+           right = trimmed((key_span){s.text + equals + 1, s.length - equals - 1});
+  char *key = strndup(left.text, left.length), *value = strndup(right.text, right.length);
+  if (!key || !value)
+    f->status = ethd__no_memory(f->message, f->name);
+  else
+    (void)take_key(f, f->out->sections[f->out->section_count - 1].name, key, value);
+  free(key);
+  free(value);
+}
+
+/* Gives inih its lines in place of fgets. It can't take a line that starts in the first column for a continuation. */
+static char *read_line(char *out, int room, void *user) {
+  feed *f = user;
+  if (f->status || f->at >= f->end) return NULL;
+  key_span s = next_line(f);
+  if (is_prose(f, s)) {
+    take_prose(f, trimmed(s));
+    s.length = 0;
+  }
+  check_line(f, s);
+  s = uncommented(s);
+  if (!f->status && s.length + 1 > (size_t)room)
+    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a line of %zu characters, this build of inih keeps %d", f->name, f->line, s.length,
+           room - 1);
+  if (f->status) return NULL;
+  memcpy(out, s.text, s.length);
+  out[s.length] = 0;
+  return out;
+}
+
+ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, const char *repeats, const char *prose,
+                           ethd_ini *out, char message[ETHD_MESSAGE_MAX]) {
+  feed f = {text, text + length, 0, name, repeats, prose, out, ETHD_OK, message};
   *out = (ethd_ini){.keys = calloc(ETHD_INI_KEYS_MAX, sizeof *out->keys),
                     .sections = calloc(ETHD_INI_SECTIONS_MAX, sizeof *out->sections)};
   if (!out->keys || !out->sections) {

@@ -1,7 +1,7 @@
 /* INI files: a strict layer above inih. What inih would cut, join or skip is an error here.
 
      [section]
-     key = value      ; a comment        # and ; start comment lines, " ;" ends a line
+     key = value      ; a comment        # and ; start comment lines, " ;" ends a line, but in a section of prose
 
    All [main]. */
 #ifndef ETHD__TEXT_INI_H
@@ -30,11 +30,12 @@ typedef struct ethd_ini {
 } ethd_ini;
 
 /* Parses text that messages call `name`. `repeats`: a "section.key" that may occur more than once, or
-   NULL. Refuses, with file:line: bytes that aren't text, lines over 197 characters (without their comments),
+   NULL. `prose`: sections, " a b ", whose values are text for people: they go on to the end of the line, however long it
+   is; NULL: none. Refuses, with file:line: bytes that aren't text, lines over 197 characters (without their comments),
    text after a section's ']', keys before the first section, keys without '=', empty values, a key that
    occurs twice, over 512 keys or sections. A section may be continued later. */
 ETHD_MUST_CHECK ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, const char *repeats,
-                                           ethd_ini *out, char message[ETHD_MESSAGE_MAX]);
+                                           const char *prose, ethd_ini *out, char message[ETHD_MESSAGE_MAX]);
 
 /* Returns the key's entry, NULL if the file doesn't have it. */
 const ethd_ini_key *ethd_ini_find(const ethd_ini *ini, const char *section, const char *key);
