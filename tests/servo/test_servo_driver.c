@@ -99,7 +99,7 @@ static int32_t raw(int at) { return (int16_t)drive.words[at]; }
 
 /* ---- what goes and comes ---- */
 
-START_TEST(test_goes_and_comes) {
+TEST(test_goes_and_comes) {
   start_device();
   drive.words[MOCK_POSITION1] = 0xFFFF;
   drive.words[MOCK_POSITION1 + 1] = 0xFFFE;
@@ -123,11 +123,10 @@ START_TEST(test_goes_and_comes) {
   ck_assert_int_eq(raw(MOCK_TORQUE1) | raw(MOCK_CONTROL) | raw(MOCK_STATUS), 0);
   close_device();
 }
-END_TEST
 
 /* Virtual instants stay what they are, also where they happen to be near the system's: nothing waits, and what is
    read is stamped with the tick's own. */
-START_TEST(test_virtual_near_the_clock) {
+TEST(test_virtual_near_the_clock) {
   start_device();
   now = ethd__clock_now() - 20 * TICK;
   for (int i = 0; i < 20; i++) {
@@ -136,7 +135,6 @@ START_TEST(test_virtual_near_the_clock) {
   }
   close_device();
 }
-END_TEST
 
 static void place(int64_t count) {
   drive.words[MOCK_POSITION1] = (uint16_t)(count >> 16);
@@ -151,7 +149,7 @@ static void set_float(int at, float value) {
 }
 
 /* A finger's place relative to the ring, 2.5 ms old, once for each count of readings. */
-START_TEST(test_reading) {
+TEST(test_reading) {
   start_device();
   ck_assert_int_eq(tick(0, 0), ETHD_OK);
   set_float(MOCK_READING_X, 0.00125f);
@@ -174,9 +172,8 @@ START_TEST(test_reading) {
   ck_assert_int_eq(sense.sample_ns, before + 1);
   close_device();
 }
-END_TEST
 
-START_TEST(test_unwraps) {
+TEST(test_unwraps) {
   mock_start(&drive, 0);
   ethd_setting settings[] = {{"map", "plant.map", 1}, {"port", drive.port, 2}};
   place(2147483000);
@@ -191,10 +188,9 @@ START_TEST(test_unwraps) {
   }
   close_device();
 }
-END_TEST
 
 /* A counter that jumps is dropped and told; once more within 10 ms it is grave. */
-START_TEST(test_encoder_jump) {
+TEST(test_encoder_jump) {
   start_device();
   for (int i = 0; i < 20; i++) tick(0, 0);
   place(500);
@@ -210,10 +206,9 @@ START_TEST(test_encoder_jump) {
   ck_assert_int_eq(sense.faults & sense.grave, ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP));
   close_device();
 }
-END_TEST
 
 /* By default, from the drive's limits: no key of the map asks for it. */
-START_TEST(test_encoder_frozen) {
+TEST(test_encoder_frozen) {
   start_device();
   for (int i = 0; i < 20; i++) tick(0, 0);
   int n = 0;
@@ -229,10 +224,9 @@ START_TEST(test_encoder_frozen) {
   }
   close_device();
 }
-END_TEST
 
 /* A joint of 0.01 kg m^2 that speeds up as 0.5 Nm bids, read with the wrong sign, runs away from the torque. */
-START_TEST(test_encoder_reversed) {
+TEST(test_encoder_reversed) {
   for (int sign = -1; sign <= 1; sign += 2) {
     start_device();
     for (int i = 0; i < 20; i++) tick(0, 0);
@@ -248,9 +242,8 @@ START_TEST(test_encoder_reversed) {
     close_device();
   }
 }
-END_TEST
 
-START_TEST(test_speed_limit) {
+TEST(test_speed_limit) {
   open_device();
   ck_assert_double_eq(servo->limits(device).speed, 1.2);
   close_device();
@@ -260,9 +253,8 @@ START_TEST(test_speed_limit) {
   ck_assert_double_eq(servo->limits(device).speed, 0.3);
   close_device();
 }
-END_TEST
 
-START_TEST(test_home_and_joint) {
+TEST(test_home_and_joint) {
   char *text, path[64];
   size_t length;
   mock_start(&drive, 0);
@@ -299,9 +291,8 @@ START_TEST(test_home_and_joint) {
   unlink(path);
   close_device();
 }
-END_TEST
 
-START_TEST(test_unconfirmed) {
+TEST(test_unconfirmed) {
   char *text, path[64];
   size_t length;
   snprintf(path, sizeof path, "%s/plant.map", folder);
@@ -320,9 +311,8 @@ START_TEST(test_unconfirmed) {
   free(all);
   unlink(path);
 }
-END_TEST
 
-START_TEST(test_settings_refused) {
+TEST(test_settings_refused) {
   static const struct {
     ethd_setting one;
     const char *why;
@@ -342,7 +332,6 @@ START_TEST(test_settings_refused) {
   ck_assert_int_eq(open_with(nobody, 2), ETHD_E_DEVICE);
   ck_assert_msg(strstr(message, "127.0.0.1:1: Connection refused") != NULL, "%s", message);
 }
-END_TEST
 
 /* ---- rows of the fault table ---- */
 
@@ -363,7 +352,7 @@ static void spoil(uint64_t count, mock_kind kind, int code) {
   drive.act = from_to;
 }
 
-START_TEST(test_missing_once) {
+TEST(test_missing_once) {
   start_device();
   for (int i = 0; i < 20; i++) ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
   spoil(1, MOCK_DROP, 0);
@@ -376,9 +365,8 @@ START_TEST(test_missing_once) {
   ck_assert_int_eq(raw(MOCK_TORQUE1), (int)lrint(0.1 * NM));
   close_device();
 }
-END_TEST
 
-START_TEST(test_feedback_old) {
+TEST(test_feedback_old) {
   start_device();
   for (int i = 0; i < 20; i++) tick(0.1, 0);
   double q = sense.q[0];
@@ -388,9 +376,8 @@ START_TEST(test_feedback_old) {
   ck_assert_double_eq(sense.q[0], q);
   close_device();
 }
-END_TEST
 
-START_TEST(test_stale_answer) {
+TEST(test_stale_answer) {
   start_device();
   for (int i = 0; i < 20; i++) tick(0.1, 0);
   spoil(2, MOCK_OLD, 0);
@@ -399,9 +386,8 @@ START_TEST(test_stale_answer) {
   ck_assert_int_eq(sense.faults, ETHD_FAULT_BIT(ETHD_FAULT_REPLY_STALE));
   close_device();
 }
-END_TEST
 
-START_TEST(test_bad_answers) {
+TEST(test_bad_answers) {
   start_device();
   for (int i = 0; i < 20; i++) tick(0.1, 0);
   spoil(1, MOCK_GARBLE, 0);
@@ -413,9 +399,8 @@ START_TEST(test_bad_answers) {
   ck_assert_int_eq(sense.grave, ETHD_FAULT_BIT(ETHD_FAULT_REPLY_BAD));
   close_device();
 }
-END_TEST
 
-START_TEST(test_drive_fault) {
+TEST(test_drive_fault) {
   start_device();
   for (int i = 0; i < 20; i++) tick(0.1, 0);
   drive.words[MOCK_STATUS] |= 1;
@@ -430,10 +415,9 @@ START_TEST(test_drive_fault) {
   ck_assert_int_eq(ticks_until(ETHD_FAULT_DRIVE, 5), 1);
   close_device();
 }
-END_TEST
 
 /* A fault that stays until the drive is told to leave it: without [clear] it could never be acknowledged. */
-START_TEST(test_clear) {
+TEST(test_clear) {
   start_device();
   for (int i = 0; i < 20; i++) tick(0.1, 0);
   drive.words[MOCK_STATUS] |= 1;
@@ -457,10 +441,9 @@ START_TEST(test_clear) {
   ck_assert_int_eq(raw(MOCK_CONTROL), 1);
   close_device();
 }
-END_TEST
 
 /* Why a start failed is said. */
-START_TEST(test_why) {
+TEST(test_why) {
   start_device();
   servo->safe(device);
   for (int i = 0; i < 5; i++) tick(0, 0);
@@ -469,9 +452,8 @@ START_TEST(test_why) {
   ck_assert_msg(strstr(servo->why(device), "still holds an old set-point"), "%s", servo->why(device));
   close_device();
 }
-END_TEST
 
-START_TEST(test_bus_voltage) {
+TEST(test_bus_voltage) {
   start_device();
   tick(0, 0);
   drive.words[MOCK_VOLTAGE] = 230;
@@ -483,10 +465,9 @@ START_TEST(test_bus_voltage) {
   ck_assert_int_eq(ticks_until(ETHD_FAULT_BUS_VOLTAGE, 5), 1);
   close_device();
 }
-END_TEST
 
 /* A slow register costs its question every tenth time, and its row comes so much later. */
-START_TEST(test_every) {
+TEST(test_every) {
   ck_assert_msg(open_changed("[register bus_voltage]\n", "[register bus_voltage]\nevery = 10\n") == ETHD_OK, "%s",
                 message);
   ck_assert_int_eq(servo->start(device), ETHD_OK);
@@ -508,9 +489,8 @@ START_TEST(test_every) {
   ck_assert_int_eq(worst, 10);
   close_device();
 }
-END_TEST
 
-START_TEST(test_not_followed) {
+TEST(test_not_followed) {
   start_device();
   for (int i = 0; i < 20; i++) tick(0.1, 0);
   drive.frozen = 1;
@@ -524,7 +504,6 @@ START_TEST(test_not_followed) {
   ck_assert(!shows(ETHD_FAULT_NOT_FOLLOWED));
   close_device();
 }
-END_TEST
 
 /* A drive that answers late has read its joints when the question came; the sample isn't stamped after that. */
 static _Atomic int64_t latched;
@@ -536,7 +515,7 @@ static mock_act answer_late(void *user, uint64_t n, int function) {
   return (mock_act){MOCK_LATE, 0, 20000};
 }
 
-START_TEST(test_no_sample_looks_younger) {
+TEST_LOOP(test_no_sample_looks_younger, 0, 2) {
   is_virtual = 0;
   ck_assert_msg(open_changed("divisor = 1", _i ? "divisor = 1\nexchange = combined" : "divisor = 1") == ETHD_OK, "%s",
                 message);
@@ -551,7 +530,6 @@ START_TEST(test_no_sample_looks_younger) {
   }
   close_device();
 }
-END_TEST
 
 /* ---- slow buses ---- */
 
@@ -605,7 +583,7 @@ static double soft_start(void) {
 
 /* However rarely a bus answers, down to 40 ms twice: the loop lives on it, a missing answer is only counted, and a bus
    that stays silent is row 5 after the larger of 5 ms and two exchanges. */
-START_TEST(test_divisors) {
+TEST_LOOP(test_divisors, 1, 21) {
   char line[32];
   int divisor = _i;
   snprintf(line, sizeof line, "divisor = %d", divisor);
@@ -632,9 +610,8 @@ START_TEST(test_divisors) {
   close_loop();
   close_device();
 }
-END_TEST
 
-START_TEST(test_too_slow) {
+TEST(test_too_slow) {
   ck_assert_int_eq(open_changed("divisor = 1", "divisor = 26"), ETHD_E_RANGE);
   ck_assert_msg(
       strstr(message, "bus.divisor: found 26, an exchange in 26 ms; at most 25 ms are allowed: choose up to 25"), "%s",
@@ -643,21 +620,19 @@ START_TEST(test_too_slow) {
   ck_assert_msg(open_changed("divisor = 1", "divisor = 25") == ETHD_OK, "%s", message);
   close_device();
 }
-END_TEST
 
 /* A camera at 90 Hz behind the drive: without its rate every reading would be late. */
 /* What the wire itself takes is refused before anything is tried. */
-START_TEST(test_wire_too_slow) {
+TEST(test_wire_too_slow) {
   ck_assert_int_eq(open_changed("transport = tcp", "transport = rtu\nbaud = 115200"), ETHD_E_RANGE);
   ck_assert_msg(strstr(message, "bus.divisor: found 1, an exchange in 1 ms; its 2 messages take") &&
                     strstr(message, "choose from 8, a faster line, or fewer registers"),
                 "%s", message);
   mock_stop(&drive);
 }
-END_TEST
 
 /* A borrowed register counts only as far as does no harm, and still shows an answer of the exchange before. */
-START_TEST(test_small_counter) {
+TEST(test_small_counter) {
   ck_assert_msg(open_changed("[register counter]  ", "[register counter]\nmax = 3\n#") == ETHD_OK, "%s", message);
   ck_assert_int_eq(servo->start(device), ETHD_OK);
   int seen = 0;
@@ -673,9 +648,8 @@ START_TEST(test_small_counter) {
   ck_assert_int_eq(sense.faults, ETHD_FAULT_BIT(ETHD_FAULT_REPLY_STALE));
   close_device();
 }
-END_TEST
 
-START_TEST(test_camera) {
+TEST(test_camera) {
   static const struct {
     const char *key;
     double age;
@@ -702,10 +676,9 @@ START_TEST(test_camera) {
     close_device();
   }
 }
-END_TEST
 
 /* What measures says how often; a servo without a finger says nothing of it. */
-START_TEST(test_no_finger) {
+TEST(test_no_finger) {
   char *text, path[64];
   size_t length;
   snprintf(path, sizeof path, "%s/plant.map", folder);
@@ -722,7 +695,6 @@ START_TEST(test_no_finger) {
   unlink(path);
   close_device();
 }
-END_TEST
 
 /* ---- lost and found ---- */
 
@@ -735,7 +707,7 @@ static void connect_again(void) {
 }
 
 /* ETHD_SERVO_PLUGS times, 10 without. */
-START_TEST(test_unplugged) {
+TEST(test_unplugged) {
   const char *given = getenv("ETHD_SERVO_PLUGS");
   const int plugs = given ? atoi(given) : 10;
   start_device();
@@ -758,10 +730,9 @@ START_TEST(test_unplugged) {
   ck_assert_uint_eq(((ethd__servo_device *)device)->link.counts.lost, (uint64_t)plugs);
   close_device();
 }
-END_TEST
 
 /* The first set-point of a connection is zero, also where the drive goes on with the old one by itself. */
-START_TEST(test_first_is_zero) {
+TEST(test_first_is_zero) {
   mock_start(&drive, 0);
   drive.words[MOCK_TORQUE1] = 1234;
   drive.words[MOCK_CONTROL] = 1;
@@ -771,9 +742,8 @@ START_TEST(test_first_is_zero) {
   ck_assert_int_eq(raw(MOCK_TORQUE1), 0);
   close_device();
 }
-END_TEST
 
-START_TEST(test_old_set_point) {
+TEST(test_old_set_point) {
   start_device();
   for (int i = 0; i < 5; i++) tick(0.5, 0);
   servo->safe(device);
@@ -790,9 +760,8 @@ START_TEST(test_old_set_point) {
   ck_assert(!shows(ETHD_FAULT_SET_POINT));
   close_device();
 }
-END_TEST
 
-START_TEST(test_safe) {
+TEST(test_safe) {
   start_device();
   for (int i = 0; i < 5; i++) tick(0.5, 0);
   servo->safe(device);
@@ -807,10 +776,9 @@ START_TEST(test_safe) {
   ck_assert_int_eq(raw(MOCK_TORQUE1), 0);
   close_device();
 }
-END_TEST
 
 /* Nothing comes from the loop: its last torque doesn't stay. */
-START_TEST(test_loop_gone) {
+TEST(test_loop_gone) {
   start_device();
   for (int i = 0; i < 5; i++) tick(0.5, 0);
   for (int i = 0; i < 5; i++) (void)!servo->service(device, 0, now += TICK);
@@ -819,7 +787,6 @@ START_TEST(test_loop_gone) {
   ck_assert_int_eq(raw(MOCK_TORQUE1), 0);
   close_device();
 }
-END_TEST
 
 static void *serve_once(void *unused) {
   (void)unused;
@@ -833,7 +800,7 @@ static mock_act hold_all(void *user, uint64_t n, int function) {
 }
 
 /* While an exchange waits for its answer, the control thread's calls return. */
-START_TEST(test_never_waits) {
+TEST(test_never_waits) {
   pthread_t thread;
   start_device();
   tick(0, 0);
@@ -851,9 +818,8 @@ START_TEST(test_never_waits) {
   pthread_join(thread, NULL);
   close_device();
 }
-END_TEST
 
-START_TEST(test_figures) {
+TEST(test_figures) {
   ethd_figure figures[ETHD_FIGURES_MAX];
   start_device();
   for (int i = 0; i < 100; i++) tick(0, 0);
@@ -865,66 +831,31 @@ START_TEST(test_figures) {
   ck_assert_ptr_null(servo->remark(device, 0));
   close_device();
 }
-END_TEST
 
 /* The plant's map with answers awaited for long: a busy machine is no fault. 0: written. */
-static int write_map(const char *path) {
+static void write_map(const char *path) {
   char *text;
   size_t length;
-  if (ethd_text_read("apps/config/plant.map", 1 << 16, &text, &length, message)) return 1;
+  ck_assert_int_eq(ethd_text_read("apps/config/plant.map", 1 << 16, &text, &length, message), ETHD_OK);
   memcpy(strstr(text, "response = 0.003 "), "response = 0.25  ", 17);
   memcpy(strstr(text, "drain = 0.0008 "), "drain = 0.0200 ", 15);
-  ethd_status status = ethd_text_write(path, text, length, message);
+  ck_assert_int_eq(ethd_text_write(path, text, length, message), ETHD_OK);
   free(text);
-  return status != ETHD_OK;
 }
 
-int main(void) {
+/* The map of each test, in a folder of its own. */
+static void set_up(void) {
   char path[64];
-  Suite *suite = suite_create("servo_driver");
-  TCase *t = tcase_create("servo_driver");
-  if (!mkdtemp(folder)) return 1;
+  ck_assert_ptr_nonnull(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/plant.map", folder);
-  if (write_map(path)) return 1;
-  tcase_set_timeout(t, 240);
-  tcase_add_test(t, test_goes_and_comes);
-  tcase_add_test(t, test_virtual_near_the_clock);
-  tcase_add_test(t, test_reading);
-  tcase_add_test(t, test_unwraps);
-  tcase_add_test(t, test_encoder_jump);
-  tcase_add_test(t, test_encoder_frozen);
-  tcase_add_test(t, test_encoder_reversed);
-  tcase_add_test(t, test_speed_limit);
-  tcase_add_test(t, test_home_and_joint);
-  tcase_add_test(t, test_unconfirmed);
-  tcase_add_test(t, test_settings_refused);
-  tcase_add_test(t, test_missing_once);
-  tcase_add_test(t, test_feedback_old);
-  tcase_add_test(t, test_stale_answer);
-  tcase_add_test(t, test_bad_answers);
-  tcase_add_test(t, test_drive_fault);
-  tcase_add_test(t, test_clear);
-  tcase_add_test(t, test_why);
-  tcase_add_test(t, test_bus_voltage);
-  tcase_add_test(t, test_not_followed);
-  tcase_add_test(t, test_every);
-  tcase_add_loop_test(t, test_divisors, 1, 21);
-  tcase_add_test(t, test_too_slow);
-  tcase_add_test(t, test_wire_too_slow);
-  tcase_add_test(t, test_small_counter);
-  tcase_add_test(t, test_camera);
-  tcase_add_test(t, test_no_finger);
-  tcase_add_test(t, test_unplugged);
-  tcase_add_test(t, test_first_is_zero);
-  tcase_add_test(t, test_old_set_point);
-  tcase_add_test(t, test_safe);
-  tcase_add_test(t, test_loop_gone);
-  tcase_add_test(t, test_never_waits);
-  tcase_add_test(t, test_figures);
-  tcase_add_loop_test(t, test_no_sample_looks_younger, 0, 2);
-  suite_add_tcase(suite, t);
-  int failed = rig_run(suite);
-  unlink(path);
-  rmdir(folder);
-  return failed;
+  write_map(path);
 }
+
+static void tear_down(void) {
+  char path[64];
+  snprintf(path, sizeof path, "%s/plant.map", folder);
+  unlink(path);
+  ck_assert_int_eq(rmdir(folder), 0);
+}
+
+FIXTURE(set_up, tear_down)

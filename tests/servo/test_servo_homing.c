@@ -58,7 +58,7 @@ static const double paces[] = {0.001, 0.004, 0.010};
 
 /* Both ways, from the middle and from either stop, by 1 to 10 ms an exchange: at the stop, at three times the speed at
    most, with no more torque. */
-START_TEST(test_stop) {
+TEST_LOOP(test_stop, 0, 3) {
   for (int way = -1; way <= 1; way += 2)
     for (int from = -1; from <= 1; from++) {
       joint j = {.q = from * 0.5, .from = -0.5, .to = 0.5, .sense = 1};
@@ -73,9 +73,8 @@ START_TEST(test_stop) {
       ck_assert_double_le(took, 15);
     }
 }
-END_TEST
 
-START_TEST(test_mark) {
+TEST(test_mark) {
   joint j = {.q = -0.1, .from = -0.5, .to = 0.5, .sense = 1};
   const ethd__homing_def def = {ETHD__HOMING_INDEX, 1, 0.1, 0.18}, wrong = {ETHD__HOMING_INDEX, -1, 0.1, 0.18};
   ethd__homing h;
@@ -88,10 +87,9 @@ START_TEST(test_mark) {
   ck_assert_int_eq(status, ETHD_E_DEVICE);
   ck_assert_msg(strstr(h.failure, "before its index mark"), "%s", h.failure);
 }
-END_TEST
 
 /* An encoder that stands, one that is reversed, a torque under the friction: no stop is found where there is none. */
-START_TEST(test_not_found) {
+TEST(test_not_found) {
   const ethd__homing_def def = {ETHD__HOMING_STOP, 1, 0.1, 0.18}, weak = {ETHD__HOMING_STOP, 1, 0.1, 0.05};
   joint stuck = {.from = -0.5, .to = 0.5, .sense = 1, .stuck = true}, turned = {.from = -5, .to = 5, .sense = -1},
         still = {.from = -0.5, .to = 0.5, .sense = 1};
@@ -106,7 +104,6 @@ START_TEST(test_not_found) {
   ck_assert_double_le(took, 1);
   ck_assert_double_le(turned.fastest, 1.2); /* ten times the speed, and a sample */
 }
-END_TEST
 
 /* ---- a servo whose counts begin anew with its power ---- */
 
@@ -154,7 +151,7 @@ static void refused_for(int which) {
 
 /* In the jig: said when it is opened, or by the command; lost with the connection, and with a counter that
    begins anew. */
-START_TEST(test_reference) {
+TEST(test_reference) {
   const double jig[2] = {0.7, -0.3};
   mock_start(&drive, 0);
   count(MOCK_POSITION1, 500);
@@ -188,10 +185,9 @@ START_TEST(test_reference) {
   servo->close(device);
   mock_stop(&drive);
 }
-END_TEST
 
 /* Given in the configuration, the arm in its jig when the program begins; or for one joint only. */
-START_TEST(test_given) {
+TEST(test_given) {
   mock_start(&drive, 0);
   ethd_setting both[] = {{"q1", "0.7", 3}, {"q2", "-0.3", 4}};
   ck_assert_msg(open_servo(both, 2) == ETHD_OK, "%s", message);
@@ -217,7 +213,6 @@ START_TEST(test_given) {
   ck_assert_msg(strstr(message, "device.home = index needs a [register index1] in plant.map"), "%s", message);
   mock_stop(&drive);
 }
-END_TEST
 
 /* A drive whose joints turn while it is enabled and pushes: 5 counts a set-point, past a mark at 1203. */
 #define MARK 1203
@@ -236,7 +231,7 @@ static mock_act turning(void *user, uint64_t n, int function) {
 }
 
 /* By index marks, through the driver: what the joint went past its mark while the answer was under way counts. */
-START_TEST(test_index) {
+TEST(test_index) {
   char *text, *all, path[64];
   size_t length;
   snprintf(path, sizeof path, "%s/plant.map", folder);
@@ -269,37 +264,31 @@ START_TEST(test_index) {
   ck_assert_int_eq(ethd_text_write(path, text, length, message), ETHD_OK);
   free(text);
 }
-END_TEST
 
-static int write_map(const char *path) {
+static void write_map(const char *path) {
   char *text;
   size_t length;
-  if (ethd_text_read("apps/config/plant.map", 1 << 16, &text, &length, message)) return 1;
+  ck_assert_int_eq(ethd_text_read("apps/config/plant.map", 1 << 16, &text, &length, message), ETHD_OK);
   memcpy(strstr(text, "response = 0.003 "), "response = 0.25  ", 17);
   memcpy(strstr(text, "drain = 0.0008 "), "drain = 0.0200 ", 15);
   for (char *at; (at = strstr(text, "absolute = yes"));) memcpy(at, "absolute = no ", 14);
-  ethd_status status = ethd_text_write(path, text, length, message);
+  ck_assert_int_eq(ethd_text_write(path, text, length, message), ETHD_OK);
   free(text);
-  return status != ETHD_OK;
 }
 
-int main(void) {
+/* The map of each test, in a folder of its own. */
+static void set_up(void) {
   char path[64];
-  Suite *suite = suite_create("servo_homing");
-  TCase *t = tcase_create("servo_homing");
-  if (!mkdtemp(folder)) return 1;
+  ck_assert_ptr_nonnull(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/plant.map", folder);
-  if (write_map(path)) return 1;
-  tcase_set_timeout(t, 120);
-  tcase_add_loop_test(t, test_stop, 0, 3);
-  tcase_add_test(t, test_mark);
-  tcase_add_test(t, test_not_found);
-  tcase_add_test(t, test_reference);
-  tcase_add_test(t, test_given);
-  tcase_add_test(t, test_index);
-  suite_add_tcase(suite, t);
-  int failed = rig_run(suite);
-  unlink(path);
-  rmdir(folder);
-  return failed;
+  write_map(path);
 }
+
+static void tear_down(void) {
+  char path[64];
+  snprintf(path, sizeof path, "%s/plant.map", folder);
+  unlink(path);
+  ck_assert_int_eq(rmdir(folder), 0);
+}
+
+FIXTURE(set_up, tear_down)

@@ -1,6 +1,5 @@
 /* Trees agree with brute force. make stress asks more: ETHD_SCENE_QUERIES of each kind; ETHD_SCENE_OBJECTS in one
    tree. */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,25 +8,27 @@
 
 #include "scene_brute.h"
 #include "scene_objects.h"
+#include "unit/suite.h"
 
-static int queries = 6000;
-
-START_TEST(test_kind) {
-  scene_seed(1000 + (uint64_t)_i);
-  scene_check_kind(&scene_kinds[_i], 1, queries);
+static int queries(void) {
+  const char *wanted = getenv("ETHD_SCENE_QUERIES");
+  return wanted ? atoi(wanted) : 6000;
 }
-END_TEST
+
+TEST_LOOP(test_kind, 0, scene_kind_count) {
+  scene_seed(1000 + (uint64_t)_i);
+  scene_check_kind(&scene_kinds[_i], 1, queries());
+}
 
 /* The tolerance grows with the scene, whose numbers are rounded alike. */
-START_TEST(test_size) {
+TEST_LOOP(test_size, 0, scene_kind_count) {
   static const double sizes[] = {0x1p-30, 0x1p-10, 0x1p10, 0x1p19};
   scene_seed(2000 + (uint64_t)_i);
-  for (int i = 0; i < 4; i++) scene_check_kind(&scene_kinds[_i], sizes[i], queries / 10);
+  for (int i = 0; i < 4; i++) scene_check_kind(&scene_kinds[_i], sizes[i], queries() / 10);
 }
-END_TEST
 
 /* The same bits from every compiler, with and without its vectors. */
-START_TEST(test_bits) {
+TEST(test_bits) {
   static const struct {
     const char *kind;
     uint64_t hash;
@@ -42,7 +43,6 @@ START_TEST(test_bits) {
       ck_assert_msg(hash == expected[i].hash, "%s: 0x%016llx", expected[i].kind, (unsigned long long)hash);
     }
 }
-END_TEST
 
 static double seconds(void) {
   struct timespec t;
@@ -51,7 +51,7 @@ static double seconds(void) {
 }
 
 /* A hundred thousand objects are in one tree. */
-START_TEST(test_many) {
+TEST(test_many) {
   const char *wanted = getenv("ETHD_SCENE_OBJECTS");
   const int many = wanted ? atoi(wanted) : 100000;
   double(*p)[4] = malloc((size_t)many * sizeof *p);
@@ -90,27 +90,4 @@ START_TEST(test_many) {
   ethd_scene_destroy(scene);
   free(o);
   free(p);
-}
-END_TEST
-
-static Suite *suite(void) {
-  Suite *s = suite_create("scene_tree");
-  TCase *c = tcase_create("scene_tree");
-  const char *wanted = getenv("ETHD_SCENE_QUERIES"), *many = getenv("ETHD_SCENE_OBJECTS");
-  if (wanted) queries = atoi(wanted);
-  tcase_set_timeout(c, wanted || many ? 0 : 60);
-  tcase_add_loop_test(c, test_kind, 0, scene_kind_count);
-  tcase_add_loop_test(c, test_size, 0, scene_kind_count);
-  tcase_add_test(c, test_bits);
-  tcase_add_test(c, test_many);
-  suite_add_tcase(s, c);
-  return s;
-}
-
-int main(void) {
-  SRunner *r = srunner_create(suite());
-  srunner_run_all(r, CK_NORMAL);
-  int failed = srunner_ntests_failed(r);
-  srunner_free(r);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }
