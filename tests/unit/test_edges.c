@@ -36,22 +36,6 @@ TEST(test_shared_scene_comes_back_once) {
   rig_close(&r);
 }
 
-/* A step of exactly limits.step_time is in time; one of a nanosecond more isn't. */
-TEST(test_step_time_to_the_nanosecond) {
-  for (int late = 0; late < 2; late++) {
-    rig r;
-    rig_open(&r, NULL);
-    r.setup.limits.step_time = 1e-9 * 500000;
-    rig_start(&r);
-    motion m = rig_at(0.05, 0, 0);
-    ethd_sense s = rig_sense(&r.setup.arm, &m);
-    s.step_ns = 500000 + late;
-    (void)rig_try(&r, &s);
-    ck_assert_int_eq(r.trace.fault, late ? ETHD_FAULT_BUDGET : ETHD_FAULT_NONE);
-    rig_close(&r);
-  }
-}
-
 /* Torque that a row takes away is zero in the trace, too: not nearly so. */
 TEST(test_raw_torque_is_zero) {
   rig r;
@@ -118,17 +102,6 @@ TEST(test_what_offset_adopts) {
     ck_assert_int_eq(law->step(p, state, &c, &out), ETHD_OK);
     ck_assert_msg((out.state == ETHD_VO) == cases[i].is_adopted, "%zu: state %d", i, out.state);
   }
-}
-
-/* Of two clean times the longer one is narrower, of two ages the shorter one. */
-TEST(test_narrower) {
-  ethd_limits a = ethd_limits_none(), b = ethd_limits_none();
-  a.clean_time = 1, b.clean_time = 2;
-  a.finger_age = 0.01, b.finger_age = 0.02;
-  a.workspace[0] = -1, b.workspace[0] = -2;
-  a.workspace[1] = 1, b.workspace[1] = 2;
-  const ethd_limits c = ethd_limits_narrower(&a, &b);
-  ck_assert(c.clean_time == 2 && c.finger_age == 0.01 && c.workspace[0] == -1 && c.workspace[1] == 1);
 }
 
 /* A filter that begins anew knows nothing of the acceleration before, along neither axis. */

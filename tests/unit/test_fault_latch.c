@@ -231,27 +231,6 @@ TEST(test_absurd_numbers) {
   }
 }
 
-/* A torque out of all measure, in a setup without a limit of it, is forgotten with the tick in which the Kalman
-   filter took it for its input. */
-TEST(test_absurd_torque) {
-  rig r;
-  moody_open(&r, 1);
-  ethd_setup_velocity(&r.setup, ETHD_VELOCITY_KALMAN);
-  rig_post(&r);
-  ethd_sense s = moody_sense(&r);
-  s.have = ETHD_HAVE_FINGER;
-  rig_try(&r, &s);
-  mood.tracking = MOODY_BAD;
-  mood.value = 1e308;
-  rig_try(&r, &s);
-  mood.tracking = MOODY_WELL;
-  rig_try(&r, &s);
-  ck_assert(!isfinite(r.trace.qd[1]));
-  for (int i = 0; i < 3; i++) rig_try(&r, &s);
-  ck_assert_double_eq(r.trace.qd[1], 0);
-  rig_close(&r);
-}
-
 /* Without latch each tick is judged alone: the one after is as if nothing had been. */
 TEST(test_without_latch) {
   rig r, healthy;

@@ -143,10 +143,10 @@ TEST(test_sum_overflows) {
 TEST(test_budget) {
   rig r;
   moody_open(&r, 1);
-  r.setup.limits.step_time = 100e-6;
+  r.setup.limits.step_time = 1e-9 * 100000;
   rig_post(&r);
   ethd_sense s = moody_sense(&r);
-  s.step_ns = 99999;
+  s.step_ns = 100000; /* the limit itself is in time */
   ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   moody_expect_event(&r, ETHD_EVENT_TAKEN, 0, 0);
   s.step_ns = 100001;

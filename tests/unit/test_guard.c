@@ -261,14 +261,17 @@ TEST(test_narrower) {
   a.speed = 4;
   b.speed = 0.4;
   a.workspace[0] = 0.1, b.workspace[0] = 0.2;
-  a.workspace[1] = 0.5;
+  a.workspace[1] = 0.5, b.workspace[1] = 0.7;
   b.workspace[2] = -1;
   a.workspace[3] = 5, b.workspace[3] = 4;
   b.step_time = 1e-4;
+  a.clean_time = 1, b.clean_time = 2; /* the longer one is narrower */
+  a.finger_age = 0.01, b.finger_age = 0.02;
   a.latch = 0, b.latch = 1;
   for (int i = 0; i < 2; i++) {
     ethd_limits n = i ? ethd_limits_narrower(&a, &b) : ethd_limits_narrower(&b, &a);
     ck_assert(n.torque == 1 && n.torque_rate == 3 && n.speed == 0.4 && n.step_time == 1e-4 && n.latch == 1);
+    ck_assert(n.clean_time == 2 && n.finger_age == 0.01);
     ck_assert(n.workspace[0] == 0.2 && n.workspace[1] == 0.5 && n.workspace[2] == -1 && n.workspace[3] == 4);
   }
   b.latch = 0;
