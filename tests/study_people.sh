@@ -60,10 +60,11 @@ awk -F, '
 
 # ---- the report says what was measured ----
 if command -v gnuplot >/dev/null; then
-  "$BUILD/bin/ethd-report" "$folder/s1" >"$folder/out" 2>&1 && grep -q 'people, with their fingers in the device' "$folder/s1/report/report.html" || fail "the report: $(cat "$folder/out")"
+  "$BUILD/bin/ethd-report" "$folder/s1" >"$folder/out" 2>&1 && grep -q 'no person</b>: a rehearsal, with the finger that the simulated device has' "$folder/s1/report/report.html" &&
+    grep -q 'say nothing about people' "$folder/s1/report/report.html" && ! grep -q 'several sources' "$folder/s1/report/report.html" || fail "the report: $(cat "$folder/out")"
   sed -i 's/^driver = sim/driver = servo/' "$folder/s2/config.ini"
   "$BUILD/bin/ethd-report" "$folder/s2" >"$folder/out" 2>&1 || fail "the report of a servo's taps: $(cat "$folder/out")"
-  grep -q 'measured on the device <code>servo</code>' "$folder/s2/report/report.html" &&
+  grep -q 'measured on the device <code>servo</code>' "$folder/s2/report/report.html" && grep -q 'people, with their fingers in the device' "$folder/s2/report/report.html" &&
     ! grep -q -i 'simulated, not measured\|were <b>fitted' "$folder/s2/report/report.html" || fail "the page of a servo's taps says it was simulated"
 fi
 

@@ -10,10 +10,12 @@ from ethd_programs.report.pictures import Path, Pictures
 from ethd_programs.report.study import Folder, Table
 from ethd_programs.report.taps import Taps
 
-#: Who led the hand: a person's finger in the device's ring, a person with a pointer, a recorded movement, nobody.
+#: Who led the hand: the finger in the device's ring (a simulated device has its own), a person with a pointer, a recorded
+#: movement, nobody.
 LEADERS = ("device", "mouse", "recorded", "simulated")
 
 _CAVEATS = {
+    "device": "Device and finger are simulated: the p values and intervals say nothing about people.",
     "mouse": "Device and fingertip are simulated: the p values and intervals speak about people like these who lead that "
     "simulation by hand.",
     "recorded": "Device and fingertips are simulated, and several simulated participants may move as the same recorded person "
@@ -57,7 +59,7 @@ class Report:
     def _asked_for(self) -> str:
         """Who led the hand in tables that don't say it for each tap."""
         f = self.folder.facts
-        if f["hands"] == "people" and not f["is_simulated"]:
+        if f["hands"] == "people":
             return "device"
         if any(utc for (utc,) in self.events.cells("utc")):  # events have a clock only where people led the finger
             return "mouse"

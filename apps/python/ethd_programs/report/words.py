@@ -22,6 +22,10 @@ _LINKS = (("primary", "Primary outcomes"), ("table1", "Table 1"), ("claims", "Th
           ("model", "Mixed model"), ("methods", "Methods"))
 
 
+def _is(count: int) -> str:
+    return "is" if count == 1 else "are"
+
+
 def _numbers(r: Report) -> None:
     t = r.taps
     checked = f", {t.accepted} accepted by the experimenter, {t.rejected} rejected and left out" if t.accepted + t.rejected else ""
@@ -31,7 +35,7 @@ def _numbers(r: Report) -> None:
                "(v_rmin); of strategies that brake how long (Delta_s) and how far (eps) they do. &quot;The paper&quot; is <em>A New Control "
                "Strategy for the Improvement of Contact Rendering with Encounter-type Haptic Displays</em>.</li>\n",
                t.count, plural(t.count), t.valid, checked, len(t.cells), plural(len(t.cells)), "; ".join(c.label for c in t.cells),
-               t.training, plural(t.training), "is" if t.training == 1 else "are")
+               t.training, plural(t.training), _is(t.training))
 
 
 def _strategies(r: Report) -> None:
@@ -59,7 +63,9 @@ def _who(r: Report, leader: str) -> Tuple[str, str]:
     if leader == "recorded":
         return ("simulated participants who move as <b>recorded people</b> did: movements of <code>%s</code>. They didn't feel this ring: the "
                 "movements were recorded elsewhere, and the fingertip is simulated", r.folder.facts["motion"] or "movement.csv, the same one for all")
-    return {"device": "people, with their fingers in the device's ring",
+    simulated = r.folder.facts["is_simulated"]
+    return {"device": "<b>no person</b>: a rehearsal, with the finger that the simulated device has" if simulated
+                      else "people, with their fingers in the device's ring",
             "mouse": "people, who led the hand with a pointer; the finger that touches the ring is simulated",
             "simulated": "<b>simulated participants, no person</b>: plausible hands and fingers, whose spread between people is assumed"}[leader], ""
 
@@ -76,13 +82,14 @@ def _people(r: Report) -> None:
             r.page.put("(%d tap%s) ", r.led[leader], plural(r.led[leader]))
         r.page.put(words, *([name] if name else []))
         between = "; "
-    r.page.put("; %d of them have a valid tap in every cell.</li>\n", int(np.count_nonzero(whole)))
+    found = int(np.count_nonzero(whole))
+    r.page.put("; %d of them %s a valid tap in every cell.</li>\n", found, "has" if found == 1 else "have")
 
 
 def _left_out(r: Report) -> None:
     if r.absent:
         r.page.put("<li><b>Left out:</b> %d test tap%s of %d participant%s who %s not analysed; participants.csv says why.</li>\n",
-                   r.taps.left_out, plural(r.taps.left_out), r.absent, plural(r.absent), "is" if r.absent == 1 else "are")
+                   r.taps.left_out, plural(r.taps.left_out), r.absent, plural(r.absent), _is(r.absent))
     stations = sum(event == "merged" for (event,) in r.events.cells("event"))  # each has left one when it was merged
     if stations > 1:
         r.page.put("<li><b>Where:</b> at %d stations of one study, each with participants of its own.</li>\n", stations)
@@ -122,12 +129,12 @@ def _found(r: Report) -> None:
         return
     r.page.put("<li><b>What came out:</b> ")
     if r.differences:
-        r.page.put('of %d <a href="#pairs">differences between strategies</a> %d are significant (p under 0.05 after Holm\'s correction)',
-                   r.differences, r.significant)
+        r.page.put('of %d <a href="#pairs">difference%s between strategies</a> %d %s significant (p under 0.05 after Holm\'s correction)',
+                   r.differences, plural(r.differences), r.significant, _is(r.significant))
     if sentences:
-        r.page.put('%sof %d <a href="#claims">sentences of the paper</a> %d are shown, of %d the contrary is shown, %d are not shown',
-                   "; " if r.differences else "", sentences, r.verdicts[paper.SHOWN], r.verdicts[paper.CONTRARY],
-                   r.verdicts[paper.OPEN] + r.verdicts[paper.TOO_FEW])
+        shown, left = r.verdicts[paper.SHOWN], r.verdicts[paper.OPEN] + r.verdicts[paper.TOO_FEW]
+        r.page.put('%sof %d <a href="#claims">sentences of the paper</a> %d %s shown, of %d the contrary is shown, %d %s not shown',
+                   "; " if r.differences else "", sentences, shown, _is(shown), r.verdicts[paper.CONTRARY], left, _is(left))
     r.page.put(".</li>\n")
 
 
@@ -191,4 +198,4 @@ def foot(r: Report, sums: Tuple[int, str]) -> None:
     if wrong:
         r.page.put('<p class="note"><b>Check sums:</b> %s.</p>\n', wrong)
     else:
-        r.page.put('<p class="note">All %d files are as SHA256SUMS says.</p>\n', files)
+        r.page.put('<p class="note">%s as SHA256SUMS says.</p>\n', "The file is" if files == 1 else f"All {files} files are")
