@@ -76,6 +76,7 @@ drawn() {
   grep -qE '<script|<link|https?://|src="[^d]|url\(' "$page" && fail "$*: the page needs something else"
   [ "$(grep -o '<img ' "$page" | wc -l)" = "$(grep -o 'src="data:image/png;base64,iVBOR' "$page" | wc -l)" ] || fail "$*: a picture that is none"
   [ "$(grep -o '<table>' "$page" | wc -l)" = "$(grep -o '</table>' "$page" | wc -l)" ] || fail "$*: a table without an end"
+  "${PYTHON:-python3}" tests/report_width.py "$page" || fail "$*: a column is off the screen"
   for picture in "$where"/*.png; do [ "$(wc -c <"$picture")" -gt 8000 ] || fail "$picture is empty"; done
   for table in "$where"/*.csv; do
     awk -F, '{ gsub(/"[^"]*"/, "q") } NR == 1 { n = NF } NF != n { exit 1 }' "$table" || fail "$table isn't tidy"
@@ -96,6 +97,17 @@ done
 cp "$here/report/report.html" "$folder/before"
 drawn "$here/report" "$here"
 cmp "$here/report/report.html" "$folder/before" || fail "the same taps make another page"
+
+# Every link leads somewhere on the page; the picture of an encounter has the wall's offset as its table has it.
+"${PYTHON:-python3}" - "$here/report/report.html" <<'END' || fail "a dead link"
+import re, sys
+page = open(sys.argv[1]).read()
+links, names = set(re.findall('href="#([^"]*)"', page)), set(re.findall('id="([^"]*)"', page))
+sys.exit(f"{links - names} of {len(links)}" if links - names or len(links) < 10 else 0)
+END
+cp "$here/report/encounter-offset.csv" "$folder"
+gnuplot -e "svg=1; in='$folder/encounter-offset.csv'; out='$folder/encounter.svg'" apps/plot/report-states.gp 2>"$folder/err" || fail "$(cat "$folder/err")"
+grep -q "> $(awk -F, 'NR > 1 && $6 { e = $6 } END { printf "%.2f", 1e3 * e }' "$here/report/encounter-offset.csv") mm<" "$folder/encounter.svg" || fail "an encounter without eps"
 
 # The table agrees with the taps.
 awk -F, 'NR > 1 && $3 == "test" && $5 == "offset" && $6 == "low" && $9 { s += $11; n++ } END { printf "%d %.12g\n", n, s / n }' "$here/taps.csv" >"$folder/a"

@@ -34,9 +34,9 @@ set lmargin at screen 0.08
 set rmargin at screen 0.92
 set border 11 lc rgb grey
 set ytics nomirror
-set y2tics 10 textcolor rgb "#c0392b"
-set y2range [-12:35]
-set y2label "ring, mm" offset -1 textcolor rgb "#c0392b"
+set y2tics 2 textcolor rgb "#c0392b"
+set y2range [-2:5] # a ring that goes deeper leaves the picture, in which the wall's offset is to be seen
+set y2label "in the wall, mm" offset -1 textcolor rgb "#c0392b"
 top(i) = 1 - (104.0 + 190.0*i)/high
 bottom(i) = top(i) - 140.0/high
 
@@ -54,8 +54,13 @@ do for [i=0:n-1] {
   set title word(titles, i + 1) font "Sans,15" offset 0,-0.6
   if (i == n - 1) { set format x "%g"; set xlabel "time from t_{r/vo}, ms" offset 0,0.4 } else { set format x ""; unset xlabel }
   set arrow 1 from 0,0 to 0,1.15 nohead lc rgb "#999999" lw 1.2 front
+  eps = NaN
+  stats file using (t(0) <= to && strlen(strcol("offset_wall_m")) ? (eps = 1e3*column("offset_wall_m")) : 0, 0) nooutput
+  if (eps == eps) { set label 2 sprintf("{/Symbol e} %.2f mm", eps) at graph 0.985, second eps right offset 0,-0.7 front font "Sans,13" textcolor rgb "#d98a00" }
   plot file using (t(0) + 0.5):(1.15):(1.03):(tint(int(column("state")))) with boxes lc rgb variable fs solid 1 noborder, \
     file using (t(0)):(1e3*column("ring_m")) axes x1y2 with lines lc rgb "#c0392b" lw 1.4 dt (6,3), \
+    0 axes x1y2 with lines lc rgb "#7a7a7a" lw 1.2, \
+    file using (t(0)):(eps == eps ? 1e3*column("offset_wall_m") : 0) axes x1y2 with lines lc rgb "#d98a00" lw 2.4, \
     file using (t(0)):"beta" with steps lc rgb "#2e7d4f" lw 2.6
   unset label; unset object
 }

@@ -5,7 +5,7 @@ import re
 from concurrent.futures import Future
 from typing import List, Optional, Sequence, Union
 
-_BRIEF = 30  # letters of a cell that aren't broken into lines
+_BRIEF = 17  # letters of a cell that isn't broken into lines: every column fits a window of 1100 pixels
 
 _STYLE = (
     "body{font:16px/1.55 system-ui,'DejaVu Sans',sans-serif;color:#222;background:#fff;max-width:74rem;margin:2rem auto;"
@@ -18,6 +18,7 @@ _STYLE = (
     "td.w{font-weight:600;padding-top:.8rem}tr:hover td{background:#f7f9fb}figure{margin:1.2rem 0}"
     "img{max-width:100%;height:auto;border:1px solid #e4e4e4}figcaption{color:#555;font-size:.92rem}"
     "div.wide{overflow-x:auto}code{background:#f3f3f3;padding:0 .25em}nav a{margin-right:1rem}"
+    "@media(max-width:1250px){table{font-size:.84rem}th,td{padding:.25rem .4rem}}"
     "@media print{@page{size:A4;margin:12mm}body{max-width:none}h2{break-after:avoid}figure{break-inside:avoid}"
     "tr{break-inside:avoid}div.wide{overflow:visible}table{font-size:62%}img{max-height:24cm;width:auto}"
     "th,td{padding:1px 4px;white-space:normal}pre{white-space:pre-wrap}}"
@@ -57,7 +58,7 @@ class Page:
     def _row(self, tag: str, cells: Sequence[Optional[str]], numbers: int) -> None:
         self.put("<tr>")
         for i, cell in enumerate(c for c in cells if c is not None):
-            brief = " s" if tag == "td" and len(cell.encode()) <= _BRIEF else ""
+            brief = " s" if tag == "td" and len(cell) <= _BRIEF else ""
             self.put(f'<{tag} class="{"n" if i >= numbers else "t"}{brief}">%s</{tag}>', cell)
         self.put("</tr>\n")
 
@@ -99,7 +100,7 @@ def mean_text(n: int, mean: float, sd: float, digits: int) -> str:
 
 
 def interval_text(low: float, high: float, digits: int) -> str:
-    return "-" if low != low or high != high else f"{low:.{digits}f} to {high:.{digits}f}"
+    return "-" if low != low or high != high else f"{low:.{digits}f}\u00a0to\u00a0{high:.{digits}f}"
 
 
 def p_text(p: float) -> str:

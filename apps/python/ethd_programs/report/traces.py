@@ -170,7 +170,7 @@ def traces(r: Report) -> None:
            "Of the same taps: the active state, and the weight of the tracking torque, which stays continuous while the wall moves. Where a "
            "strategy has no states, vo stands for the ring in the wall. The recordings end soon after the touch.",
            {"in": " ".join(f"trace-{c.law}-{c.speed.word}.csv" for c in drawn), "titles": " ".join(f"{c.law}-{c.speed.word}" for c in drawn),
-            "note": "the taps above; dashed: how far the ring's front is in the wall"})
+            "note": "the taps above; dashed: the ring's front; orange: the wall"})
 
 
 def encounter(r: Report) -> None:
@@ -186,4 +186,4 @@ def encounter(r: Report) -> None:
                "finger freely again. Simulated for this picture with the study's configuration and plant, no tap of the study, whose recordings "
                "end soon after the touch.",
                {"in": " ".join(f"encounter-{law}.csv" for law in laws), "titles": " ".join(laws), "from": "-60",
-                "note": "simulated for this picture; dashed: how far the ring's front is in the wall"})
+                "note": "simulated for this picture; dashed: the ring's front; orange: the wall"})
