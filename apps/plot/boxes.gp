@@ -33,6 +33,10 @@ panel = 'plot zero with lines lc rgb "#999999" lw 1, \
   in using (3.4):(pick("smooth", "high", name, scale)) lc rgb a lw 1.8, \
   in using (4.4):(pick("offset", "high", name, scale)) lc rgb b lw 1.8'
 zero = 0
+# gnuplot draws a median in its box's colour; these are red, as a report's are.
+medians = 'do for [k=1:4] { \
+  stats in using (pick(laws[k], speeds[k], name, scale)) name "M" nooutput; x = real(word("1 2 3.4 4.4", k)); \
+  set arrow k from x - 0.25,M_median to x + 0.25,M_median nohead front lc rgb "#c00000" lw 3 }'
 
 set multiplot
 set label 1 "Taps on a virtual wall: medians, quartiles, extremes" at screen 0.075,0.968 font "Sans Bold,18"
@@ -52,26 +56,26 @@ set title "Ring's speed as it meets the wall, v_r(t_{r/vo})" font "Sans,15" offs
 set ylabel "m/s" offset 1
 name = "v_rvo_mps"; scale = 1
 set yrange [0:0.52]
-eval(panel)
+eval(medians); eval(panel)
 unset label
 
 row = 0; col = 1; eval(place)
 set title "Ring's speed as the finger touches it, v_r(t_{of/r})"
 set yrange [*:*]
 name = "v_of_mps"
-eval(panel)
+eval(medians); eval(panel)
 
 row = 1; col = 0; eval(place)
 set title "First rebound, d_{max}"
 set ylabel "mm"
 set yrange [0:*]
 name = "d_max_m"; scale = 1e3
-eval(panel)
+eval(medians); eval(panel)
 
 row = 1; col = 1; eval(place)
 set title "Ring's smallest speed after the touch, v_{r min}"
 set ylabel "m/s"
 set yrange [*:*]
 name = "v_rmin_mps"; scale = 1
-eval(panel)
+eval(medians); eval(panel)
 unset multiplot

@@ -17,6 +17,7 @@ array tints[9] = [0x2166ac, 0x4393c3, 0x92c5de, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0x
 tint(k) = int(1.5 + (k - 1)*8.0/(last - 1)) # of answer k: both ends of the scale and its middle are those of the tints
 set border 0
 set tics nomirror textcolor rgb "#333333" scale 0
+set ytics left offset screen -0.16,0 # every line of words begins below the title
 set xrange [0:100]
 set yrange [cells + 0.6:0.4]
 unset key
@@ -24,7 +25,7 @@ only(q) = column("question") == q && column("n") > 0
 share(k) = 100.0*column(sprintf("n%d", k))/column("n")
 below(k) = k < 1 ? 0 : sum [j=1:k] share(j)
 set label 1 "Q".question.": shares of the answers, ".scale at screen 0.03,1 - 24.0/high font "Sans Bold,15"
-set lmargin at screen 0.16; set rmargin at screen 0.89
+set lmargin at screen 0.2; set rmargin at screen 0.89
 set tmargin at screen 1 - 52.0/high; set bmargin at screen 1 - (52.0 + 34.0*cells)/high
 set xtics ("0 %%" 0, "50 %%" 50, "100 %%" 100)
 # labels have a place even where they are empty: gnuplot 5.4 ends on a list of labels that are all undefined
