@@ -59,7 +59,7 @@ START_TEST(test_refused) {
   refused("tap", "-1", ETHD_E_RANGE, "tap");
   refused("speed", "inf", ETHD_E_RANGE, "speed");
   refused("reading", "sound", ETHD_E_UNKNOWN, "reading");
-  refused("plant", "q", ETHD_E_FILE, "q.plant");
+  refused("plant", "x", ETHD_E_FILE, "x.plant");
   refused("plant", "wall.scene", ETHD_E_SYNTAX, "wall.scene:2");
 }
 END_TEST
