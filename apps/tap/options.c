@@ -38,7 +38,7 @@ static const char doc[] =
     "  ethd-tap --taps 400 --csv taps.csv --trace traces\n"
     "  ethd-tap --finger motion/avraham_free_mit/avraham_ND_s02_be38_free.csv\n"
     "  ethd-tap --config mine.ini --transition mine,offset --record taps\n"
-    "  ethd-tap --paper --plant p\n"
+    "  ethd-tap --paper --plant q\n"
     "Eight recorded movements come with the programs, in motion: a FILE.csv that isn't there is looked for among them.";
 
 enum {
