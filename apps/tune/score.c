@@ -71,12 +71,14 @@ typedef struct tally {
   mean early, lag, eps, delta_s, d_max, v_touch, rough;
 } tally;
 
-/* Takes the squares of the lag and of the torque's changes over the ticks of the window. */
-static void take_approach(const ethd__tap_rows *rows, double end, tally *t) {
+/* Takes the squares of the lag before the wall, and of the torque's changes there and at the end, when the ring rests. */
+static void take_squares(const ethd__tap_rows *rows, double wall, tally *t) {
+  double last = rows->truth[rows->count - 1].t;
   for (size_t i = 1; i < rows->count; i++) {
     const ethd_truth *truth = &rows->truth[i];
-    if (!(truth->t > end - WINDOW && truth->t <= end)) continue;
-    take(&t->lag, pow(truth->finger[0] - truth->ring[0], 2) + pow(truth->finger[1] - truth->ring[1], 2));
+    bool comes = truth->t > wall - WINDOW && truth->t <= wall;
+    if (comes) take(&t->lag, pow(truth->finger[0] - truth->ring[0], 2) + pow(truth->finger[1] - truth->ring[1], 2));
+    if (!comes && !(truth->t > last - WINDOW)) continue;
     const double *now = rows->trace[i].tau, *before = rows->trace[i - 1].tau;
     take(&t->rough, (pow(now[0] - before[0], 2) + pow(now[1] - before[1], 2)) / 2);
   }
@@ -86,7 +88,7 @@ static void take_approach(const ethd__tap_rows *rows, double end, tally *t) {
 static void take_tap(const ethd__tap_rows *rows, const ethd__metrics *m, const ethd__speed *speed, tally *t) {
   if (!(fabs(m->v_hand - speed->centre) <= speed->band)) return;
   take(&t->early, m->reason == ETHD_TAP_EARLY_CONTACT);
-  take_approach(rows, m->t_rvo, t);
+  take_squares(rows, m->t_rvo, t);
   if (isnan(m->t_of) || m->reason == ETHD_TAP_EARLY_CONTACT) return;
   take(&t->eps, isnan(m->eps_felt) ? m->eps : m->eps_felt);
   take(&t->delta_s, m->delta_s);

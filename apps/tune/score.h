@@ -17,7 +17,7 @@
   X(delta_s, "ms", "time of braking; 0 for a law that doesn't brake")                           \
   X(d_max, "m", "first rebound")                                                                \
   X(v_touch, "m/s", "size of the ring's speed as the finger touches")                           \
-  X(rough, "Nm", "change of the torque from tick to tick, rms, over the same 50 ms")
+  X(rough, "Nm", "change of the torque from tick to tick, rms, over the same 50 ms and the tap's last 50")
 
 typedef struct ethd__tune_score {
 #define ETHD_TUNE_FIGURE(name, unit, brief) double name[ETHD_TUNE_SPEEDS];
