@@ -12,7 +12,7 @@
 
 struct ethd_cell {
   size_t size, stride;
-  _Alignas(64) atomic_uint middle; /* the slot without an owner, and whether it is fresh */
+  _Alignas(64) atomic_uint middle; /* the slot that neither side owns, and whether it is fresh */
   _Alignas(64) unsigned back;      /* the writer's slot */
   _Alignas(64) unsigned front;     /* the reader's slot */
   bool taken;                      /* the reader's slot holds a value: one was taken before */

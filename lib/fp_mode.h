@@ -1,6 +1,6 @@
-/* The processor's floating-point mode: the library computes rounded to nearest, with subnormal numbers as 0 (FTZ, DAZ) and
-   without traps, whatever mode the caller's thread is in. A function that promises this takes the mode when it begins and
-   gives the caller's back when it ends. [any, rt-safe]
+/* The processor's floating-point mode: the library computes rounded to nearest, with subnormal numbers as 0 (FTZ, DAZ)
+   and without traps, whatever mode the caller's thread is in. A function that promises this takes the mode when it
+   begins and gives the caller's back when it ends. [any, rt-safe]
 
    x87, which strtod asks for the rounding and a law may use, has a word of its own. It follows where the other one
    differs: the C library sets rounding and traps of both. */
@@ -66,8 +66,9 @@ static inline void ethd__x87_set(uint16_t word) ETHD_RT { __asm__ volatile("" : 
 #define ETHD__X87_AT 32                    /* on, where it has an x87 */
 #define ETHD__X87_MODE 0x37f               /* to nearest, to 64 bits, without traps */
 
-/* Takes the library's mode and returns what ethd__fp_give takes. What is done in between stands in a function that isn't
-   inline, so that no arithmetic moves out; setting the x87's word, which comes in between, holds calls that only read. */
+/* Takes the library's mode and returns what ethd__fp_give takes. What is done in between stands in a function that
+   isn't inline, so that no arithmetic moves out; setting the x87's word, which comes in between, holds calls that only
+   read. */
 static inline uint64_t ethd__fp_take(void) ETHD_RT {
   if (ethd__fp_is_own()) return 0;
   const uint64_t callers = ethd__fp_now() | (uint64_t)ethd__x87_now() << ETHD__X87_AT;

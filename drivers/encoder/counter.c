@@ -222,7 +222,7 @@ static double seen(const uint64_t *count) { return (double)__atomic_load_n(count
 
 static uint32_t counter_units(const void *device) { return (void)device, 1; }
 
-/* An acknowledgement means that a person has checked the coupling. */
+/* An acknowledgement means that a person has inspected the coupling. */
 static void counter_clear(void *device) { __atomic_store_n(&((counter *)device)->clear, 1, __ATOMIC_RELAXED); }
 
 static const char *counter_why(const void *device) {

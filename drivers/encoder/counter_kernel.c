@@ -103,7 +103,7 @@ static int to_count(const char *text, uint64_t *out) {
   return *end || errno ? -1 : 0;
 }
 
-/* A ceiling of 0, as ti-eqep has at first, is not set yet: such a counter stays at 0. */
+/* A ceiling of 0, as ti-eqep has at first, hasn't been set yet: such a counter stays at 0. */
 static ethd_status raise_ceiling(const ethd__counter_calls *calls, const char *path, uint64_t *out, char *message) {
   char text[32];
   uint64_t wanted = *out;

@@ -28,7 +28,7 @@ typedef struct ethd__count {
   int64_t time_ns; /* instant at which it was latched */
   int64_t edge_ns; /* instant of the last edge before that; 0: not known */
   uint64_t raw;    /* 0 to the ceiling */
-  uint64_t index;  /* of the last index pulse */
+  uint64_t index;  /* 0 to the ceiling, too */
   int32_t flags, reserved;
 } ethd__count;
 

@@ -40,7 +40,7 @@ typedef struct ethd__exposure {
   uint16_t flags;
 } ethd__exposure;
 
-/* Decodes a datagram. False: it is none of these, or its numbers are impossible. [any, rt-safe] */
+/* Decodes a datagram. False: it isn't an exposure, or its numbers are impossible. [any, rt-safe] */
 bool ethd__exposure_decode(const uint8_t *bytes, size_t count, ethd__exposure *out) ETHD_RT;
 void ethd__exposure_encode(const ethd__exposure *exposure, uint8_t out[ETHD__EXPOSURE_SIZE]) ETHD_RT;
 
@@ -54,7 +54,7 @@ typedef struct ethd__camera_clock {
   int64_t delay; /* ns, from an exposure to the earliest arrival of its datagram */
   bool started;
   uint32_t seq;                 /* of the last exposure */
-  int64_t t_ns;                 /* likewise */
+  int64_t t_ns;                 /* of the last exposure, too */
   int64_t least[2];             /* ns: the smallest arrival - t_ns of this block, and of the block before */
   uint32_t in_block, unsettled; /* unsettled: exposures to come that make no reading */
   uint64_t lost, jumps;         /* exposures missing or out of order; times that the sender or its clock began anew */

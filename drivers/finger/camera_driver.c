@@ -2,7 +2,7 @@
    datagrams of a bridge (camera.h).
 
    It listens where `listen` says and nowhere else. That is this machine alone (127.0.0.1, ::1) unless `from` names the
-   one address whose datagrams count, because their sender moves the ring. */
+   one address whose datagrams count, because any sender of such datagrams moves the ring. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>

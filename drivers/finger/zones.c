@@ -83,7 +83,7 @@ void ethd__zones_prepare(uint32_t count, double reach, double ring_radius, doubl
   for (uint32_t l = 0; l <= count; l++) {
     const zone_sums *s = &by_length[l];
     out->offset[l] = out->noise[l] = (double)NAN;
-    if (!(s->n > 0)) continue; /* no place lights this many */
+    if (!(s->n > 0)) continue; /* no place lights as many */
     out->offset[l] = s->along / s->n;
     double variance = (s->square / s->n - out->offset[l] * out->offset[l]) / 2;
     out->noise[l] = sqrt(fmax(variance, 0) + switching * switching);

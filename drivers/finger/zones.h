@@ -22,7 +22,7 @@ typedef struct ethd__zones {
   double ring_radius, reach; /* m */
   ethd_vec ray[ETHD__ZONES_MAX];
   /* for each number of lit barriers: how far the centre is toward their middle, and the standard deviation of that in
-     each axis, m; NaN: no finger lights this many */
+     each axis, m; NaN: no finger lights as many */
   double offset[ETHD__ZONES_MAX + 1], noise[ETHD__ZONES_MAX + 1];
 } ethd__zones;
 

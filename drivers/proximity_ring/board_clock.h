@@ -40,7 +40,7 @@ typedef struct ethd__board_clock {
   int64_t base_ns;  /* host time at which y is 0 */
   int64_t board_us; /* since the base */
   uint32_t t_us;    /* of the last good frame */
-  uint16_t seq;     /* likewise */
+  uint16_t seq;     /* of the last good frame, too */
   bool started, doubtful;
   ethd__ring_frame doubt; /* the frame that didn't follow */
   uint32_t in_block;      /* frames of the block that is being filled */

@@ -1,8 +1,8 @@
-/* Sees that the sensors have drifted together: by light, dirt or heat all of them count more or less than they did when they
-   were calibrated. Every distance is then wrong, and no ray is off the others' circle. But an offset of the counts moves
-   the far distances more than the near ones, so the points of a finger beside the ring's middle aren't on a circle any
-   more. Over a window of frames the offset is found that would put them on one again; nothing is asked of the finger
-   but that it is round. */
+/* Sees that the sensors have drifted together: by light, dirt or heat all of them count more or less than they did when
+   they were calibrated. Every distance is then wrong, and no ray is off the others' circle. But an offset of the counts
+   moves the far distances more than the near ones, so the points of a finger beside the ring's middle aren't on a
+   circle any more. Over a window of frames the offset is found that would put them on one again; nothing is asked of
+   the finger but that it is round. */
 #ifndef ETHD__PROXIMITY_RING_DRIFT_H
 #define ETHD__PROXIMITY_RING_DRIFT_H
 

@@ -26,7 +26,7 @@ typedef struct ethd__plausible {
   bool started;
   uint16_t counts[ETHD_RAYS]; /* of the last frame */
   double d[ETHD_RAYS];        /* m, of the last good one; NaN: none */
-  uint32_t t_us;              /* likewise */
+  uint32_t t_us;              /* of the last good one, too */
   uint32_t bad_in_a_row;
   uint8_t failing[ETHD_RAYS]; /* 0 to ETHD__FAILING */
   uint32_t out;               /* bits: sensors out of use */

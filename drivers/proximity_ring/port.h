@@ -18,8 +18,8 @@ typedef struct ethd__ring_port {
 /* Tries once to open it, now; the next attempt is due after the back-off. [main] or I/O */
 ETHD_MUST_CHECK ethd_status ethd__ring_port_open(ethd__ring_port *port, int64_t now_ns, char message[ETHD_MESSAGE_MAX]);
 
-/* To be asked before each read: was the last read long ago (ethd__clock_was_deaf), as between a device's open and its
-   start? What waited is then dropped, and the caller begins anew. I/O */
+/* Call it before each read: returns whether the last read was long ago (ethd__clock_was_deaf), as between a device's
+   open and its start. What waited is then dropped, and the caller begins anew. I/O */
 bool ethd__ring_port_was_deaf(ethd__ring_port *port, int64_t now_ns);
 
 /* Reads what has come, at most `room` bytes, and waits up to wait_ms for the first. -1: the line is gone and has

@@ -13,8 +13,8 @@ static inline int64_t ethd__clock_now(void) {
   return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
-/* Returns t_ns, or the instant just after last_ns where that is later. Readings come in their order, though the clock by
-   which they are placed is placed better with each quick arrival, and so may move back. last_ns 0: there was none.
+/* Returns t_ns, or the instant just after last_ns where that is later. Readings come in their order, though the clock
+   by which they are placed is placed better with each quick arrival, and so may move back. last_ns 0: there was none.
    [any, rt-safe] */
 static inline int64_t ethd__clock_after(int64_t last_ns, int64_t t_ns) {
   return last_ns && t_ns <= last_ns ? last_ns + 1 : t_ns;

@@ -1,7 +1,7 @@
-/* FTZ and DAZ: subnormal numbers count as 0, which keeps every step equally quick. flush sets them for this
-   thread, rounds to nearest and takes no trap, whatever an application has set; keep clears FTZ and DAZ; hold takes
-   no trap and leaves the rest. All return what was set before, for restore. What is computed in between stands in a function
-   that isn't inline. [any] */
+/* FTZ and DAZ: subnormal numbers count as 0, which keeps every step equally quick. flush sets them for this thread,
+   rounds to nearest and takes no trap, whatever an application has set; keep clears FTZ and DAZ; hold takes no trap and
+   leaves the rest. All return what was set before, for restore. What is computed in between stands in a function that
+   isn't inline. [any] */
 #ifndef ETHD__DENORMALS_H
 #define ETHD__DENORMALS_H
 

@@ -11,7 +11,7 @@
 #include "servo/bus_parts.h"
 #include "text/error_text.h"
 
-#define DRAINS 10 /* draining gives up after this multiple of the quiet that it waits for */
+#define DRAINS 10 /* draining gives up after this multiple of the quiet time */
 
 static int64_t nanoseconds(double seconds) { return (int64_t)(1e9 * seconds); }
 

@@ -20,10 +20,10 @@ typedef struct ethd__servo_bus {
   void *modbus;     /* NULL where our own framing is used */
   int fd;           /* -1: closed */
   uint16_t number;  /* of the last question in our own framing; tcp has it in the answer */
-  bool at_once;     /* the line hands bytes over at once; true of every tcp connection */
+  bool at_once;     /* the line delivers each byte at once; true of every tcp connection */
   int error;        /* errno of the last failure, libmodbus's included */
   int64_t quiet_ns; /* CLOCK_MONOTONIC: when the line was left */
-  int64_t asked_ns; /* just before the last question went out */
+  int64_t asked_ns; /* CLOCK_MONOTONIC: just before the last question went out */
 } ethd__servo_bus;
 
 /* Opens map->port. Serial: the map's baud, whatever it is, read back. Blocks for map->connect at most. The message

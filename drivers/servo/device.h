@@ -26,7 +26,7 @@ typedef struct ethd__servo_device {
   ethd__servo_map map;
   char map_name[96];     /* as the settings have it */
   char wire[300];        /* the remark about what an exchange takes */
-  char unconfirmed[128]; /* the remark about registers without confirmation; empty: there are none */
+  char unconfirmed[128]; /* the remark about unconfirmed registers; empty: there are none */
   char coarse[160];      /* the remark about a torque whose first count is over the limit; empty: there is none */
   char inertia[2][192];  /* remarks about the inertia of the map's axes; empty: there is none */
   int64_t period_ns, exchange_ns;
@@ -50,7 +50,7 @@ typedef struct ethd__servo_device {
   int64_t grace_ns;
   ethd_histogram age;
 
-  /* belongs to the holder of the lock: the I/O thread, or [main] in start and stop */
+  /* needs the lock, which one thread holds: the I/O thread, or [main] in start and stop */
   pthread_mutex_t lock;
   ethd__servo_link link;
   ethd__guardian guardian;        /* has no process if the drive has a watchdog */

@@ -75,7 +75,8 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
 }
 
 /* Remarks in this order: how long an exchange takes, until the drive itself shows it; how many registers are
-   unconfirmed; a torque that is too coarse; an inertia that is doubtful; the guardian; the line's own delay; then what the map leaves open. */
+   unconfirmed; a torque that is too coarse; an inertia that is doubtful; the guardian; the line's own delay; then what
+   the map leaves open. */
 static const char *remark(const void *device, uint32_t i) {
   const ethd__servo_device *d = device;
   const char *own[8];

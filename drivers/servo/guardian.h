@@ -19,7 +19,7 @@
 #include "servo/frame.h"
 #include "servo/plan.h"
 
-/* Who may write to the line. FREE: the guardian has written and is done; the next user connects anew. */
+/* Who may write to the line. FREE: the guardian has written and is done; the next user of the line connects anew. */
 enum { ETHD__GUARDIAN_OURS, ETHD__GUARDIAN_ITS, ETHD__GUARDIAN_FREE };
 
 /* The shared page. */
@@ -50,7 +50,8 @@ typedef struct ethd__guardian {
    spacing is an exchange, or the time that one unanswered message may take. [any] */
 int64_t ethd__guardian_bound(const ethd__servo_map *map, int64_t exchange_ns);
 
-/* Returns a sentence with the way out where the guardian ends with this program, whatever ends that; else NULL. [main] */
+/* Returns a sentence with the way out where the guardian ends with this program, whatever ends that; else NULL. [main]
+   */
 const char *ethd__guardian_ends(void);
 
 /* Writes what else may end both at once where this process runs, for people: a container, a control group that is
@@ -76,7 +77,8 @@ void ethd__guardian_arm(ethd__guardian *guardian, bool armed);
 bool ethd__guardian_due(const ethd__guardian *guardian, int64_t now_ns);
 
 /* Takes the line and brings the drive to rest: it writes zero and then [disable], each until it is answered or was
-   tried often enough; zeros go out to all units once before one is tried again. Returns whether the drive has answered all of it. In the guardian's process. */
+   tried often enough; zeros go out to all units once before one is tried again. Returns whether the drive has answered
+   all of it. In the guardian's process. */
 bool ethd__guardian_act(ethd__guardian *guardian);
 
 /* Ends the process in order and waits for it; does nothing when there is none. [main] */

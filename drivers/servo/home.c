@@ -1,4 +1,4 @@
-/* Finds out at which angles the joints are: a person puts the arm into its jig and says so, or the joints are moved.
+/* Finds out at which angles the joints are: the user confirms that the arm stands in its jig, or the joints are moved.
    [main] */
 #include <math.h>
 #include <time.h>
@@ -9,7 +9,7 @@
 #include "text/error_text.h"
 
 #define PAUSE 200000 /* ns */
-#define FAILURES 20  /* bad turns in a row that end the search */
+#define FAILURES 20  /* bad exchanges in a row that end the search */
 
 /* ---- one turn lasts an exchange; on a virtual clock nothing waits ---- */
 

@@ -29,8 +29,8 @@ typedef struct ethd__homing {
 } ethd__homing;
 
 /* Takes a sample of the joint, dt s after the one before; `mark` says whether the index mark has passed since then.
-   ETHD_STATUS_BUSY: ask for *torque until the next sample. ETHD_OK: found; the joint is at the place now (STOP) or was when
-   the mark passed (INDEX). ETHD_E_DEVICE: `failure` says why not. *torque is zero unless the result is BUSY. */
+   ETHD_STATUS_BUSY: ask for *torque until the next sample. ETHD_OK: found; the joint is at the place now (STOP) or was
+   when the mark passed (INDEX). ETHD_E_DEVICE: `failure` says why not. *torque is zero unless the result is BUSY. */
 ETHD_MUST_CHECK ethd_status ethd__homing_turn(const ethd__homing_def *def, ethd__homing *homing, double q, double dt,
                                               bool mark, double *torque);
 

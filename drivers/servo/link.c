@@ -87,8 +87,8 @@ static void set(ethd__servo_link *l, int role, double raw) {
   if (r >= 0) ethd__servo_pack(&l->map->registers[r], raw, ethd__servo_plan_words(&l->plan, l->map, r));
 }
 
-/* Counts from 0 to the register's max, of two to the lesser one. A borrowed register, such as a speed that isn't used, has a small max so that
-   its counting does no harm. */
+/* Counts from 0 to the register's max; with two registers, to the smaller max. A borrowed register, such as a speed
+   that isn't used, has a small max so that its counting does no harm. */
 static uint16_t next_count(const ethd__servo_link *l) {
   double most = UINT16_MAX;
   for (int i = ETHD__SERVO_COUNTER; i <= ETHD__SERVO_COUNTER2; i++)

@@ -1,4 +1,4 @@
-/* Says before the drive is enabled what a map leaves open. */
+/* Lists what a map leaves open, for the user who enables the drive. */
 #include "servo/map.h"
 #include "servo/words.h"
 

@@ -12,7 +12,7 @@
 typedef struct words {
   const char *at[WORDS_MAX];
   size_t length[WORDS_MAX];
-  uint32_t count; /* WORDS_MAX: this many or more */
+  uint32_t count; /* WORDS_MAX: that number or more */
 } words;
 
 static words split(const char *text) {

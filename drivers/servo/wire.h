@@ -6,7 +6,7 @@
 
 typedef struct ethd__servo_wire {
   uint32_t questions; /* in an exchange, without those about slow registers */
-  uint32_t bytes;     /* of these requests and their answers */
+  uint32_t bytes;     /* of the questions and their answers */
   double usual;       /* s that these take, with turnarounds and silences */
   double most;        /* s, with all questions about slow registers that may fall into one exchange */
 } ethd__servo_wire;

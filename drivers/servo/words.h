@@ -20,8 +20,8 @@ double ethd__servo_unpack(const ethd__servo_register *r, const uint16_t *words);
 /* Returns the words as one unsigned number. [any] */
 uint32_t ethd__servo_bits(const ethd__servo_register *r, const uint16_t *words);
 
-/* Converts a joint's torque, Nm, to a raw number within the register's limits, rounded towards no torque: the drive never
-   gets more than was asked for. NaN is no torque. [any] */
+/* Converts a joint's torque, Nm, to a raw number within the register's limits, rounded towards no torque: the drive
+   never gets more than was asked for. NaN is no torque. [any] */
 double ethd__servo_raw(const ethd__servo_register *r, double joint);
 
 /* Converts a raw number to SI at the joint. [any] */

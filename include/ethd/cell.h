@@ -20,8 +20,8 @@ ETHD_API void ethd_cell_destroy(ethd_cell *cell);
 /* Puts a value, which replaces one that hasn't been taken. One writer at a time. [any, rt-safe] */
 ETHD_API void ethd_cell_put(ethd_cell *cell, const void *value) ETHD_RT;
 
-/* Takes the newest value. ETHD_STATUS_STALE: nothing newer than the last one has come; `value` then holds that one again, or
-   is untouched if nothing ever came. One reader at a time. [any, rt-safe] */
+/* Takes the newest value. ETHD_STATUS_STALE: nothing newer than the last one has come; `value` then holds that one
+   again, or is untouched if nothing ever came. One reader at a time. [any, rt-safe] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_cell_take(ethd_cell *cell, void *value) ETHD_RT;
 
 ETHD_END_DECLS

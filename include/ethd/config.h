@@ -53,9 +53,9 @@ static inline ETHD_MUST_CHECK ethd_status ethd_config_load(const char *path, eth
   return ethd_config_make(&source, out, message);
 }
 
-/* Reads a file that another person made, in a recording or a study's folder, and runs nothing of theirs: a plugin is
-   refused (ETHD_E_LOAD), with a hint at the programs' option --plugins. Its scene is a regular file of that folder, reached
-   without a link, and so is the file itself (ETHD_E_FILE). */
+/* Reads a file that another person made, in a recording or a study's folder, and runs none of its code: a plugin is
+   refused (ETHD_E_LOAD), with a hint at the programs' option --plugins. Its scene is a regular file of that folder,
+   reached without a link, and so is the file itself (ETHD_E_FILE). */
 static inline ETHD_MUST_CHECK ethd_status ethd_config_load_received(const char *path, ethd_config **out,
                                                                     char message[ETHD_MESSAGE_MAX]) {
   const ethd_config_source source = {ethd_sizes_here(), (uint32_t)sizeof(ethd_config), 1, path, NULL, 0, NULL};
@@ -71,8 +71,9 @@ static inline ETHD_MUST_CHECK ethd_status ethd_config_parse(const char *text, si
   return ethd_config_make(&source, out, message);
 }
 
-/* The same for text that another person made: a plugin is refused as ethd_config_load_received refuses it (ETHD_E_LOAD), and
-   no code of theirs runs; nor is a scene read from outside of `folder` or through a link (ETHD_E_FILE). */
+/* The same for text that another person made: a plugin is refused as ethd_config_load_received refuses it
+   (ETHD_E_LOAD), and none of its code runs; nor is a scene read from outside of `folder` or through a link
+   (ETHD_E_FILE). */
 static inline ETHD_MUST_CHECK ethd_status ethd_config_parse_received(const char *text, size_t length, const char *name,
                                                                      const char *folder, ethd_config **out,
                                                                      char message[ETHD_MESSAGE_MAX]) {

@@ -127,8 +127,8 @@ typedef struct ethd_setup_key {
   uint32_t count;      /* 1, or how many numbers the key holds: workspace 4, reach 2, joints 4, lag 16 */
 } ethd_setup_key;
 
-/* Gives the keys that hold numbers under the chosen laws and methods one by one, with `index` from 0 on; ETHD_STATUS_EMPTY
-   after the last. [main] */
+/* Gives the keys that hold numbers under the chosen laws and methods one by one, with `index` from 0 on;
+   ETHD_STATUS_EMPTY after the last. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_key_at(const ethd_setup *setup, uint32_t index, ethd_setup_key *out);
 
 /* Sets one number, in its key's unit (ethd_setup_key), by its name in the configuration: "contact.k_e", "ring.radius",
@@ -173,7 +173,7 @@ typedef struct ethd_event {
   const ethd_scene *scene; /* which [main] may now free; NULL: none */
 } ethd_event;
 
-/* How many ticks since create or reset had each of these; for faults, how many occurrences there were. */
+/* Ticks with each kind of event since create or reset; for faults, the number of occurrences. */
 typedef struct ethd_counters {
   uint64_t ticks, queried, swaps, contacts_lost, readings_dropped, events_dropped;
   uint64_t faults[ETHD_FAULT_COUNT];
@@ -211,11 +211,11 @@ ETHD_API void ethd_control_destroy(ethd_control *control);
 /* Checks a whole setup and hands it over; the next step takes it, without a jump: at that tick the torque is what the
    old setup would have commanded under its own limits, and the difference to the new one fades linearly to 0 over the
    new swap_time. Until then a torque may be over a limit that became narrower, by the share of the fade that is left; a
-   new torque_rate holds at once. While events that nobody polls leave no room for those that hand scenes back, it
-   waits. ETHD_STATUS_BUSY: the last one hasn't been taken yet; post again. Any refusal, also those of ethd_setup_check, leaves
-   everything as it was. The period can't change (ETHD_E_ARGUMENT). A scene that a post has replaced may be posted again
-   only after an event has handed it back, since that event may come at any moment. Takes nothing from the heap. [main]
-   */
+   new torque_rate holds at once. It waits while events that weren't polled leave no room for the events that return
+   scenes. ETHD_STATUS_BUSY: the last one hasn't been taken yet; post again. Any refusal, also those of
+   ethd_setup_check, leaves everything as it was. The period can't change (ETHD_E_ARGUMENT). A scene that a post has
+   replaced may be posted again only after an event has handed it back, since that event may come at any moment. Takes
+   nothing from the heap. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup,
                                                        ethd_error *error);
 

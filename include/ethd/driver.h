@@ -6,7 +6,7 @@
    from now on; stop [main] disables; close [main] frees. The simulated device is a driver like any other.
 
    Any function but open and close may be NULL: the driver then has nothing to do, to read or to limit there. But a
-   driver that has write must have safe too, because a device that takes a torque must be able to remove it.
+   driver that has write must have safe too, because what applies a torque must be able to remove it.
 
    One device may consist of several drivers (a servo, its encoders, a proximity ring): each adds what it
    knows to the sense, and takes from the command what is its own. They are read and written in the order of their
@@ -32,8 +32,8 @@
 
 ETHD_BEGIN_DECLS
 
-/* The interface's version, 2, and the bytes of what a driver fills or returns, so that none of these grows unnoticed;
-   never 0, which is a table whose abi was not set. */
+/* The interface's version, 2, and the bytes of what a driver fills or returns, so that no struct grows unnoticed; never
+   0, which is a table whose abi wasn't set. */
 #define ETHD_DRIVER_ABI \
   ((uint32_t)(20000 + sizeof(ethd_sense) + sizeof(ethd_command) + sizeof(ethd_limits) + sizeof(ethd_dynamics)))
 #define ETHD_DRIVERS_MAX 4         /* behind one device */
@@ -80,10 +80,10 @@ struct ethd_driver {
      sentence takes its place. What open leaves in *device is closed, also after a failure, unless it is NULL. */
   ethd_status (*open)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
   ethd_status (*start)(void *device);
-  /* Adds what is new to *out, which is zero again after each step. ETHD_STATUS_STALE, or another positive status: this driver
-     gives the joint samples and has no newer one; the loop then holds the torque and steps when there is one, or at
-     once, with the last sample, if *out reports a fault that ends the torque. Negative: nothing is known of the device
-     any more. */
+  /* Adds what is new to *out, which is zero again after each step. ETHD_STATUS_STALE, or another positive status: this
+     driver gives the joint samples and has no newer one; the loop then holds the torque and steps when there is one, or
+     at once, with the last sample, if *out reports a fault that ends the torque. Negative: nothing is known of the
+     device any more. */
   ethd_status (*read)(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
   /* A command with `safe` set has zero torque. */
   ethd_status (*write)(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT;
@@ -113,7 +113,8 @@ struct ethd_driver {
      [main] */
   ethd_status (*prepare)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
   /* Returns which joints the device measures: bit 0 joint 1, bit 1 joint 2. It is asked of what `prepare` left, before
-     anything is opened: a device of which one joint alone is measured is refused. NULL: not known, may be both. [main] */
+     anything is opened: a device of which one joint alone is measured is refused. NULL: not known, may be both. [main]
+     */
   uint32_t (*joints)(const void *device);
 };
 
@@ -149,9 +150,9 @@ extern ETHD_API const ethd_driver ethd_driver_plugin;
    table is checked: size, ABI, id, brief, settings, and functions that need each other (write and safe, units and
    service): ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_ARGUMENT, ETHD_E_TABLE. ETHD_E_UNKNOWN, ETHD_E_DUPLICATE: an id, or a
    driver's key, with and without its id; ETHD_E_FILE, ETHD_E_LOAD, ETHD_E_SYMBOL: a file; ETHD_E_FULL: more than
-   ETHD_DRIVERS_MAX, or units; ETHD_E_ARGUMENT: one joint alone is measured; else what the driver's open returns. message holds one line. In a child that the process
-   makes by fork, *driver's start, stop, home and service refuse (ETHD_E_DEVICE), and close frees without calling the
-   drivers, since the device stays the parent's. [main] */
+   ETHD_DRIVERS_MAX, or units; ETHD_E_ARGUMENT: one joint alone is measured; else what the driver's open returns.
+   message holds one line. In a child that the process makes by fork, *driver's start, stop, home and service refuse
+   (ETHD_E_DEVICE), and close frees without calling the drivers, since the device stays the parent's. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from,
                                                       const ethd_device_def *def, const ethd_driver **driver,
                                                       void **device, char message[ETHD_MESSAGE_MAX]);

@@ -1,5 +1,5 @@
-/* Estimators: joint speed from positions, the finger from the ring's distances, and its movement between readings. Links
-   from libethd. */
+/* Estimators: joint speed from positions, the finger from the ring's distances, and its movement between readings.
+   Links from libethd. */
 #ifndef ETHD_ESTIMATE_H
 #define ETHD_ESTIMATE_H
 
@@ -113,8 +113,9 @@ typedef struct ethd_finger {
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_prepare(ethd_fit_method method, const double *p, double ring_radius,
                                                       double finger_radius, ethd_fit *out, ethd_error *error);
 
-/* Fits the finger to one frame of rays, m. ETHD_STATUS_STALE: the rays that count don't determine a centre within the ring,
-   since there are under 3 (robust: 2) or, for kasa and centroid, they lie on one line; out is then untouched. [rt] */
+/* Fits the finger to one frame of rays, m. ETHD_STATUS_STALE: the rays that count don't determine a centre within the
+   ring, since there are under 3 (robust: 2) or, for kasa and centroid, they lie on one line; out is then untouched.
+   [rt] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS],
                                                    ethd_finger *out) ETHD_RT;
 
@@ -190,10 +191,10 @@ ETHD_API void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *st
 ETHD_API void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) ETHD_RT;
 
 /* Takes a reading of the finger's position, m in R_0, stamped `age` s ago. A filter that isn't started starts there, at
-   rest, with standard deviations of 1 m/s and 10 m/s^2. ETHD_STATUS_STALE: the reading is counted but not used, because it is
-   not newer than the last used one (late), not finite, or over `gate` standard deviations from where it was expected,
-   by the innovation of both axes together against sqrt(P_xx + noise^2) (gated). The ETHD_FILTER_GATED_MAX-th gated
-   reading in a row starts the filter anew, since then the filter is wrong, not the readings. [rt] */
+   rest, with standard deviations of 1 m/s and 10 m/s^2. ETHD_STATUS_STALE: the reading is counted but not used, because
+   it is not newer than the last used one (late), not finite, or over `gate` standard deviations from where it was
+   expected, by the innovation of both axes together against sqrt(P_xx + noise^2) (gated). The ETHD_FILTER_GATED_MAX-th
+   gated reading in a row starts the filter anew, since then the filter is wrong, not the readings. [rt] */
 ETHD_API ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x,
                                         double age) ETHD_RT;
 

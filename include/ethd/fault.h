@@ -46,7 +46,7 @@ typedef enum ethd_reaction {
    differences. REPLY_MISSING counts from when the map's `response` is over, and so does REPLY_BAD where libmodbus waits
    for the rest of noise that is shorter than an answer (drivers/servo/README.md). Event values: FINITE kind of law; LAW
    100 kind - status; BUDGET ns; SPEED m/s; INPUT which, ETHD_HAVE_* or 0 for q; else 1 where the second reaction is
-   due, 0 where not. TORQUE and TORQUE_RATE are told only when they last: over 0.1 s, over 20 ticks. */
+   due, 0 where not. TORQUE and TORQUE_RATE are reported only when they last: over 0.1 s, over 20 ticks. */
 #define ETHD_FAULTS(X)                                                                                    \
   X(1, OVERRUN, COUNTED, COUNTED, "1 tick", "a tick was late")                                            \
   X(2, OVERRUNS, STOP, STOP, "5 ms", "ticks are late too often, or one by more than 5 ms")                \

@@ -11,16 +11,17 @@
    Functional Differential Equations, 1993, 5.2). ethd-check gives the margin of the sampled loop.
 
    The stop first sees whether the device brakes. In units of speed, what it has commanded may exceed 1.2 times the fall
-   that it sees by a tenth of the speed at its start. So a device with a reversed encoder, or one that is later than
-   told, becomes faster by a tenth at most, and by three tenths if its mass is a third of what was told. Until t_d + lag
-   have passed nothing that the stop commands can show, so the fall counts from the highest speed until then. A torque
-   counts as held for as long as the last one was. A fall by friction counts, too: with a reversed encoder, a mass told
-   three times too large and a friction that stops the ring by itself, the ring can reach twice the speed at the start.
+   that it sees by a tenth of the speed at its start. So a device with a reversed encoder, or with more delay than
+   stated, becomes faster by a tenth at most, and by three tenths if its mass is a third of the stated mass. Until t_d +
+   lag have passed nothing that the stop commands can show, so the fall counts from the highest speed until then. A
+   torque counts as held for as long as the last one was. A fall by friction counts, too: with a reversed encoder, a
+   mass stated three times too large and a friction that stops the ring by itself, the ring can reach twice the speed at
+   the start.
 
    A stop ends with zero torque: when the links are slower than 20 mm/s (the paper's v_th, eq. 11), when it may command
    next to nothing for longer than reaction + T because the speed doesn't fall, and at limits.stop_time. An unknown mass
-   is assumed as ETHD_MASS_ASSUMED; the torque of a heavier device is removed without braking. An unknown delay is assumed as limits.gap,
-   without one as ETHD_DELAY_ASSUMED.
+   is assumed as ETHD_MASS_ASSUMED; a heavier device isn't braked: its torque is removed. An unknown delay is assumed as
+   limits.gap, without one as ETHD_DELAY_ASSUMED.
 
    The wall of limits.margin has the gains with which a mass under a force that is `2 reaction` late comes to rest
    quickest without overshoot, a triple root of s^2 + (B s + K) e^(-2 r s) = 0:
@@ -114,8 +115,8 @@ static inline ethd_limits ethd_limits_device(void) {
   return limits;
 }
 
-/* Checks each number against its row: ETHD_E_RANGE or ETHD_E_NOT_FINITE with the limit's name; ETHD_E_SIZE where
-   ethd_limits_none of these headers didn't make them. [main] */
+/* Checks each number against its row: ETHD_E_RANGE or ETHD_E_NOT_FINITE with the limit's name; ETHD_E_SIZE where this
+   version's ethd_limits_none didn't make them. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error);
 
 /* Returns the stricter of two, limit by limit; it latches if either does. [any] */
@@ -177,8 +178,8 @@ typedef struct ethd_guard_device {
   double damping;    /* Ns/m, of the margin's wall */
 } ethd_guard_device;
 
-/* Returns the device of a setup's numbers; lag: s, see ethd_velocity_lag. What the dynamics don't know is assumed as said
-   above. [any] */
+/* Returns the device of a setup's numbers; lag: s, see ethd_velocity_lag. What the dynamics don't know is assumed as
+   said above. [any] */
 ETHD_API ethd_guard_device ethd_guard_device_of(const ethd_arm *arm, const ethd_dynamics *dynamics, double gap,
                                                 double period, double lag);
 
@@ -208,9 +209,9 @@ typedef struct ethd_guard_motion {
 ETHD_API double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *state, double dt) ETHD_RT;
 
 /* Limits `torque`, Nm of each joint, in place and returns the bits of what it did. In this order: if the ring is being
-   stopped (speed, workspace, a fault), the stop's torque replaces it, else the margin's wall pushes; a torque that isn't
-   finite becomes zero; heat and torque bound each joint; unless the ring is being stopped, the rate bounds the change,
-   and heat and torque bound the result once more. [rt] */
+   stopped (speed, workspace, a fault), the stop's torque replaces it, else the margin's wall pushes; a torque that
+   isn't finite becomes zero; heat and torque bound each joint; unless the ring is being stopped, the rate bounds the
+   change, and heat and torque bound the result once more. [rt] */
 ETHD_API int32_t ethd_guard_step(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *state,
                                  const ethd_guard_motion *motion, double torque[2]) ETHD_RT;
 

@@ -29,12 +29,13 @@
      ethd_device_open -> ethd_control_create -> ethd_loop_create -> driver start -> ethd_loop_start
 
    ethd_loop_create does what takes long (in a large program locking the memory takes seconds); a drive that is enabled
-   waits for its first message only some milliseconds until its watchdog, or the servo's guardian, takes the torque away.
+   waits for its first message only some milliseconds until its watchdog, or the servo's guardian, takes the torque
+   away.
 
    A child that the process makes by fork (system and popen exec, daemon and multiprocessing don't) has a copy of the
    loop and none of its threads, and the device stays the parent's. There the loop has ended and isn't armed, join
-   returns ETHD_E_ARGUMENT, enable and home ETHD_STATUS_BUSY, and destroy frees the copy; none of them calls the driver. So
-   daemon() comes before ethd_loop_start.
+   returns ETHD_E_ARGUMENT, enable and home ETHD_STATUS_BUSY, and destroy frees the copy; none of them calls the driver.
+   So daemon() comes before ethd_loop_start.
 
    Destroy the loop before its device and its controller. */
 #ifndef ETHD_LOOP_H
@@ -96,7 +97,7 @@ typedef struct ethd_loop_def {
   const ethd_driver *driver; /* of ethd_device_open; or one that has start, read, write and safe, and service if it
                             has units */
   void *device;              /* open; it is started between create and start */
-  ethd_control *control;     /* no other code may step it while the loop exists */
+  ethd_control *control;     /* only the loop steps it while the loop exists */
   double period;             /* s, the controller's (ethd_control_period), 1e-5 to 1; another one is refused */
   int32_t cpu;               /* number of a processor, ETHD_CPU_NONE or ETHD_CPU_AUTO */
   int32_t priority;          /* of SCHED_FIFO, 1 to 99; the device's I/O threads come ETHD_IO_BELOW under it */
@@ -147,9 +148,9 @@ typedef struct ethd_loop_stats {
 /* Fills a definition for ethd_loop_default, with the sizes, bytes, of ethd_loop_def, _row and _stats there. [any] */
 ETHD_API void ethd_loop_fill(ethd_loop_def *def, uint32_t def_size, uint32_t row_size, uint32_t stats_size);
 
-/* Returns 1 ms, no cpu, priority 80, early_wake 0, dma_latency -1, no gap, no heartbeat, soft_start 0.1 s,
-   256 KiB, 4096 rows. Headers in which one of these structs has another size than in this library get a definition
-   that ethd_loop_create refuses. [any] */
+/* Returns 1 ms, no cpu, priority 80, early_wake 0, dma_latency -1, no gap, no heartbeat, soft_start 0.1 s, 256 KiB,
+   4096 rows. Headers in which a struct has another size than in this library get a definition that ethd_loop_create
+   refuses. [any] */
 static inline ethd_loop_def ethd_loop_default(void) {
   ethd_loop_def def;
   ethd_loop_fill(&def, (uint32_t)sizeof def, (uint32_t)sizeof(ethd_loop_row), (uint32_t)sizeof(ethd_loop_stats));
@@ -194,14 +195,14 @@ ETHD_API void ethd_loop_raise(ethd_loop *loop, ethd_fault fault);
 ETHD_API void ethd_loop_acknowledge(ethd_loop *loop);
 
 /* Starts the device again, restarts the controller and arms, with a soft start; meanwhile the loop leaves both alone.
-   Must not be called while a posted setup waits. ETHD_STATUS_BUSY: the loop kept the device for over a second; else what the
-   device's start returns: if that isn't ETHD_OK, the loop is disarmed. [main] */
+   Must not be called while a posted setup waits. ETHD_STATUS_BUSY: the loop didn't release the device within a second;
+   else what the device's start returns: if that isn't ETHD_OK, the loop is disarmed. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_enable(ethd_loop *loop);
 
 /* Calls the device's home, with the joints' angles, rad, or NULL (driver.h), while it is disarmed and the loop leaves
-   it alone. A controller without a fault is then restarted, since the pose may jump. ETHD_STATUS_BUSY: the loop kept the device,
-   or is armed. ETHD_E_ARGUMENT: the device has no home. ETHD_E_RANGE: an angle that isn't finite or is over
-   ETHD_SENSE_ANGLE_MAX; else what its home returns. [main] */
+   it alone. A controller without a fault is then restarted, since the pose may jump. ETHD_STATUS_BUSY: the loop didn't
+   release the device, or is armed. ETHD_E_ARGUMENT: the device has no home. ETHD_E_RANGE: an angle that isn't finite or
+   is over ETHD_SENSE_ANGLE_MAX; else what its home returns. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_home(ethd_loop *loop, const double *q);
 
 /* Asks the threads to end; zero torque is the last thing written. [any] */

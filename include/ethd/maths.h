@@ -12,7 +12,7 @@ typedef struct ethd_vec {
   double x, y;
 } ethd_vec;
 
-/* None of these changes a unit or a frame: vectors that are added have the same. */
+/* No function here changes a unit or a frame: vectors that are added have the same. */
 
 /* Returns two numbers in memory, x first, as a vector. [any, rt-safe] */
 static inline ethd_vec ethd_vec_of(const double v[2]) ETHD_RT {
@@ -62,12 +62,11 @@ static inline double ethd_vec_norm(ethd_vec a) ETHD_RT { return sqrt(a.x * a.x +
    and give equal bits for every compiler and CPU with IEEE 754 doubles, as long as they are built
    without contraction or value-changing optimisation (-ffp-contract=off, never -ffast-math).
 
-   Common to all: angles in rad; NaN in, NaN out, always the same NaN; round to nearest is assumed; errno
-   is never set and no floating-point flag is promised, but no argument leads to an invalid operation, a division by zero or
-   an overflow, which an application may have made traps (feenableexcept). With FTZ and DAZ set, as on the control thread,
-   subnormal arguments count as zeros and subnormal results may be zeros; all other results stay the same.
-   ulp: a unit in the last place of the exact result. The bounds are those of 6e8 points measured against
-   80-bit long double. */
+   Common to all: angles in rad; NaN in, NaN out, always the same NaN; round to nearest is assumed; errno is never set
+   and no floating-point flag is promised, but no argument leads to an invalid operation, a division by zero or an
+   overflow, which an application may have made traps (feenableexcept). With FTZ and DAZ set, as on the control thread,
+   subnormal arguments count as zeros and subnormal results may be zeros; all other results stay the same. ulp: a unit
+   in the last place of the exact result. The bounds are those of 6e8 points measured against 80-bit long double. */
 
 ETHD_BEGIN_DECLS
 

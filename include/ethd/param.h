@@ -1,4 +1,5 @@
-/* Parameters as tables: the table is the documentation (ethd-check --laws prints it) and the check. Links from libethd. */
+/* Parameters as tables: the table is the documentation (ethd-check --laws prints it) and the check. Links from libethd.
+   */
 #ifndef ETHD_PARAM_H
 #define ETHD_PARAM_H
 

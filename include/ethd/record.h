@@ -59,8 +59,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
      start       detail: free words. A new controller (or a reset one) with the present setup; with "enabled" the
                  running one was restarted and its motors keep their heat
      transition  detail: law. Changes the transition law of the present setup
-     contact     detail: law. Its contact law
-     tracking    detail: law. Its tracking law
+     contact     detail: law. Changes its contact law
+     tracking    detail: law. Changes its tracking law
      set         detail: section.key value. Changes the present setup
      clear       faults were acknowledged
      heat        detail: h1 h2. The motors' heat, see ethd_control_heat
@@ -90,12 +90,12 @@ ETHD_API uint64_t ethd_recording_kept(const ethd_recording *recording);
    now or before. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_close(ethd_recording *recording, char message[ETHD_MESSAGE_MAX]);
 
-/* Replays a recording through the library and compares every field bit for bit. ETHD_OK: equal, and
-   message says how many ticks. ETHD_E_DIFFERS: message names the first tick and field that differ. ETHD_E_UNFINISHED:
-   the ticks that are there are equal, but the recording wasn't closed, so later ones may be lost; or ticks are missing
-   in between, and what follows can't be replayed; or *stop isn't 0 any more, as another thread or a handler of signals has
-   made it (NULL: nobody does). Any other negative status: message says why it can't be read. Without
-   `plugins` a recording that needs one is refused, since a plugin is a program that the folder brings along. */
+/* Replays a recording through the library and compares every field bit for bit. ETHD_OK: equal, and message says how
+   many ticks. ETHD_E_DIFFERS: message names the first tick and field that differ. ETHD_E_UNFINISHED: the ticks that are
+   there are equal, but the recording wasn't closed, so later ones may be lost; or ticks are missing in between, and
+   what follows can't be replayed; or another thread or a handler of signals has set *stop (NULL: never). Any other
+   negative status: message says why it can't be read. Without `plugins` a recording that needs one is refused, since a
+   plugin is a program that the folder brings along. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_verify(const char *folder, bool plugins, const volatile int *stop,
                                                            char message[ETHD_MESSAGE_MAX]);
 

@@ -48,7 +48,7 @@ static ethd_contact measure(const ethd__tick *t, const ethd__candidate *k) {
   return c;
 }
 
-/* NaN fails every one of these. */
+/* NaN fails every comparison. */
 static bool ruling_is_good(const ethd_ruling *r) {
   return r->beta >= 0 && r->beta <= 1 && r->share >= 0 && r->share <= 1 && r->damping >= 0 && isfinite(r->damping) &&
          isfinite(r->offset) && isfinite(r->feed) && isfinite(r->shift.x) && isfinite(r->shift.y) &&

@@ -35,8 +35,8 @@ static double seconds(int64_t a, int64_t b) { return 1e-9 * (double)((uint64_t)b
 
 /* Returns the time from the last joint sample to this one, s, by their stamps. A bus that isn't in step with the ticks
    gives samples whose spacing varies, though each comes at a tick: by the ticks' time the speed would seem to rise and
-   fall, also to a stop. Where the stamps differ by more than limits.gap from the ticks' time, or don't rise, their clock
-   is wrong, and the ticks' time counts. */
+   fall, also to a stop. Where the stamps differ by more than limits.gap from the ticks' time, or don't rise, their
+   clock is wrong, and the ticks' time counts. */
 static double sample_spacing(const ethd__tick *t) {
   const double period = t->plan->setup.period;
   if (t->sense->time_ns <= t->state->velocity_ns) return t->dt;

@@ -23,8 +23,7 @@ typedef struct ethd__setup_field {
 #define ETHD__SETUP_FIELDS 15
 extern const ethd__setup_field ethd__setup_fields[ETHD__SETUP_FIELDS];
 
-/* Returns how many of a table's parameters a setup has room for. An unchecked table may say that it has
-   more, or not be there. */
+/* Returns how many of a table's parameters a setup has room for. An unchecked table may claim more, or be missing. */
 static inline uint32_t ethd__setup_room(const ethd_param *params, uint32_t count) {
   if (!params) return 0;
   return count < ETHD_PARAMS_MAX ? count : ETHD_PARAMS_MAX;

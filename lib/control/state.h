@@ -98,7 +98,7 @@ typedef struct ethd__state {
   ethd__place places[ETHD__PLACES];
   double memory[ETHD_MEMORY];      /* of the transition law */
   unsigned live;                   /* slots in use, as bits */
-  unsigned orphans;                /* of these, whose scene was replaced at this tick */
+  unsigned orphans;                /* contacts whose scene was replaced at this tick */
   double given;                    /* J that the last contact gave away */
   uint64_t given_at;               /* tick */
   uint64_t excess_from, excess_at; /* first and last step after which it was far too much; 0: never */

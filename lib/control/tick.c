@@ -65,8 +65,8 @@ static bool input_is_possible(const ethd_sense *s, double *which) {
 static double since(int64_t now, int64_t then) { return 1e-9 * (double)(int64_t)((uint64_t)now - (uint64_t)then); }
 
 /* Returns true unless the device's clock stands still or has another rate: over a window it may differ from the loop's
-   periods by two gaps, since the age of a sample may change by one. A step that is late begins a new window, and so does
-   a device that says itself that its feedback is old. */
+   periods by two gaps, since the age of a sample may change by one. A step that is late begins a new window, and so
+   does a device that says itself that its feedback is old. */
 static bool clock_runs(const ethd__tick *t, bool in_time) {
   ethd__state *state = t->state;
   const double period = t->plan->setup.period;

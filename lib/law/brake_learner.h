@@ -5,9 +5,9 @@
 
      x = integral of the model's acceleration, twice     y = d_0 - d - v_0 t     y = s + k x
 
-   s is the stretch of an elastic transmission: the encoders sit on its motors' side, which moves before the ring
-   does (0.5 mm on plant p, where x is 2 mm: y/x would say 1.25). It comes within some ms and stays, so k is the slope
-   of y over x by least squares, from SETTLED on, until the ring stands or the finger comes. Earlier brakings count with
+   s is the stretch of an elastic transmission: the encoders sit on its motors' side, which yields before the ring does
+   (0.5 mm on plant p, where x is 2 mm: y/x would say 1.25). It comes within some ms and stays, so k is the slope of y
+   over x by least squares, from SETTLED on, until the ring stands or the finger comes. Earlier brakings count with
    weight 1 - learn, and a prior says 1. A braking that ended deeper than planned never raises k. [rt] */
 #ifndef ETHD__LAW_BRAKE_LEARNER_H
 #define ETHD__LAW_BRAKE_LEARNER_H

@@ -62,7 +62,7 @@ size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, dou
   return count;
 }
 
-/* ---- what it is made of ---- */
+/* ---- its contents ---- */
 
 static size_t given_count(const ethd__object *o) {
   const ethd__shape *s = &ethd__shapes[o->shape];

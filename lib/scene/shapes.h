@@ -40,8 +40,8 @@ typedef struct ethd__shape {
   /* Turns a copy of the given numbers into what a scene keeps; NULL: the copy is kept as it is. [main] */
   void (*keep)(double *kept);
   size_t added; /* numbers that `keep` puts behind the given ones */
-  /* The object lies in the convex hull of these discs, which should fit closely, since bounds and reach are the hull's.
-     0 discs: it is endless, and in no tree. [main] */
+  /* The object lies in the convex hull of the discs, which should fit closely, since bounds and reach are the hull's. 0
+     discs: it is endless, and in no tree. [main] */
   size_t discs;
   ethd__disc (*disc)(const double *kept, size_t k);
   /* Sets distance, point and n of the nearest point of the surface. */

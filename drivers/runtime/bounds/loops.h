@@ -74,7 +74,7 @@ int ethd__bounds_rows(const ethd__sampled_loop *loop, ethd__bounds_row out[ETHD_
 
 /* The margin that every loop must have. */
 typedef struct ethd__bounds_margin {
-  double gain;  /* its stiffness, its damping and both at once may grow by this factor */
+  double gain;  /* the factor by which its stiffness, its damping and both at once may grow */
   double delay; /* s by which a torque may be later */
 } ethd__bounds_margin;
 

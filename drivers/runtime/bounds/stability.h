@@ -8,7 +8,7 @@
          .---------------.  v^ .------+---.
      <---| -(K x + B v^) |<----| estimator|
          '---------------'     '----------'
-   Where the transmission is elastic, the force acts on the motor's side, which is the one that is measured, and the rest
+   With an elastic transmission, the force acts on the motor's side, where the position is measured, and the rest
    of the mass hangs on it by a spring and a damper; their motion over a tick is exact, too. Coulomb friction is left
    out, because it stops small swings only; ethd__sampled_held says how small. Pure functions. [any] */
 #ifndef ETHD__BOUNDS_STABILITY_H
@@ -53,13 +53,13 @@ double ethd__sampled_damping_needed(const ethd__sampled_loop *loop);
 /* Returns the smallest mass from which on the gains are stable, INFINITY if they aren't up to 1e4 kg. */
 double ethd__sampled_mass_min(const ethd__sampled_loop *loop);
 
-/* Return the largest stable value of one gain while the other stays as it is; 0: there is none. Where the transmission
-   is elastic there may be several bands of stable values; then it is the end of the band that holds the gain's own
+/* Return the largest stable value of one gain while the other stays as it is; 0: there is none. With an elastic
+   transmission there may be several bands of stable values; then it is the end of the band that holds the gain's own
    value, if that is stable. */
 double ethd__sampled_stiffness_max(const ethd__sampled_loop *loop);
 double ethd__sampled_damping_max(const ethd__sampled_loop *loop);
 
-/* Returns whether the loop is stable as it is and on the whole path to this multiple of its stiffness and its damping. */
+/* Returns whether the loop is stable now and on the whole path to the given multiples of its stiffness and damping. */
 bool ethd__sampled_stable_up_to(const ethd__sampled_loop *loop, double stiffness_times, double damping_times);
 
 /* Returns whether the loop is stable as it is and with each delay that is at most `more` s longer. */

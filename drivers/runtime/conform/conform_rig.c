@@ -10,11 +10,11 @@
 #include "clock.h"
 
 #define CLEARING 0.3 /* s */
-#define PAUSED 0.1   /* s: samples farther apart don't count for the spacing, since none was asked for in between */
+#define PAUSED 0.1   /* s: samples farther apart don't count for the spacing, since none was requested in between */
 #define IDLE 1000000 /* ns that an I/O thread sleeps when it had nothing to do */
 #define STEPS 8      /* steps of the angle that an acceleration must cause to be seen */
 #define LOOK 0.01    /* s after which it looks again whether the joints move, */
-#define SETTLE 200   /* times at most */
+#define SETTLE 200   /* attempts at most */
 #define STANDS 0.02  /* rad/s: a slower joint stands */
 
 ethd_verdict ethd__conform_rig_answer(ethd_conform_answer *a, ethd_verdict verdict, const char *format, ...) {

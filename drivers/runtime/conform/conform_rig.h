@@ -65,14 +65,15 @@ void ethd__conform_rig_run(ethd__conform_rig *r, double seconds, int joint, doub
    after 2 s. */
 void ethd__conform_rig_settle(ethd__conform_rig *r);
 
-/* Returns the smallest acceleration, rad/s^2, that two windows of this length, s, can tell from the steps of the angle. */
+/* Returns the smallest acceleration, rad/s^2, that two windows of `window` s can distinguish from the steps of the
+   angle. */
 double ethd__conform_rig_least(const ethd__conform_rig *r, double window);
 
 /* Returns the mean time from one joint sample to the next so far, s. */
 double ethd__conform_rig_spacing(const ethd__conform_rig *r);
 
-/* Returns the mean acceleration of a joint over two windows of this length, s, by the instants of its samples, rad/s^2. With
-   `write` 0 nothing is written meanwhile. */
+/* Returns the mean acceleration of a joint over two windows of `window` s, by the instants of its samples, rad/s^2.
+   With `write` 0 nothing is written meanwhile. */
 double ethd__conform_rig_acceleration(ethd__conform_rig *r, int joint, double torque, int write, double window);
 
 #endif

@@ -1,4 +1,4 @@
-/* Questions about the end of a torque: not renewed, without messages, made safe, started anew. */
+/* Questions about the end of a torque: not renewed, no message, `safe`, a new start. */
 #include "conform/letting_go.h"
 
 #include <math.h>

@@ -10,7 +10,7 @@ ethd_verdict ethd__conform_watchdog(const ethd_conform_def *def, ethd_conform_an
 /* A device that gets no message at all removes the torque by itself. */
 ethd_verdict ethd__conform_silence(const ethd_conform_def *def, ethd_conform_answer *a);
 
-/* A device that was made safe stays so, whatever is written. */
+/* A device stays safe after `safe`, whatever is written. */
 ethd_verdict ethd__conform_safe(const ethd_conform_def *def, ethd_conform_answer *a);
 
 /* A start remembers no torque from before. */

@@ -7,7 +7,7 @@
 #include "loop/loop.h"
 
 #define COOKIE 0x6c6f6f70u
-#define SKEWED 0x6c6f6f80u /* and up: the definition of a program with another size of one of these structs */
+#define SKEWED 0x6c6f6f80u /* and up: the definition of a program in which a struct has another size */
 
 static const struct {
   const char *name;

@@ -1,6 +1,6 @@
 #include "ethd/loop.h"
 
-#define EXACT 32 /* values below this have a bin each; from there on this is the number of bins per factor of two */
+#define EXACT 32 /* values below this have a bin each; above, each factor of two has this number of bins */
 #define EXACT_BITS 5
 
 static uint32_t bin_of(uint64_t ns) {

@@ -101,7 +101,7 @@ struct ethd_loop {
 int64_t ethd__loop_now(const ethd_loop *loop) ETHD_RT;
 int64_t ethd__loop_boot(const ethd_loop *loop) ETHD_RT;
 
-/* Sleeps, ticks and counts until a stop is asked for; returns 0, or the error with which the sleep failed. [rt] */
+/* Sleeps, ticks and counts until a stop is requested; returns 0, or the error with which the sleep failed. [rt] */
 int ethd__loop_cycle(ethd_loop *loop) ETHD_RT;
 
 /* Makes one turn, which is a sleep and a tick; returns 0, or the error with which the sleep failed. [rt] */

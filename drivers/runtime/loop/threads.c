@@ -14,8 +14,8 @@
 #include "loop/loop.h"
 
 #define SERVICE_STACK ((size_t)256 << 10)
-#define PAUSE 1000000 /* ns between two looks at whether the loop has left the device, */
-#define PATIENCE 1000 /* looks at most */
+#define PAUSE 1000000 /* ns between two checks of whether the loop has released the device */
+#define PATIENCE 1000 /* checks at most */
 
 static void pause_a_little(void) {
   struct timespec t = {.tv_nsec = PAUSE};
@@ -191,7 +191,7 @@ ethd_status ethd_loop_enable(ethd_loop *l) {
     ethd_control_restart(l->def.control);
     arm(l);
   } else {
-    ethd_loop_disarm(l); /* the state of the device is unknown */
+    ethd_loop_disarm(l); /* the device's state is unknown */
   }
   atomic_store_explicit(&l->mode, ETHD__LOOP_RUNS, memory_order_release);
   return status;
@@ -211,7 +211,7 @@ ethd_status ethd_loop_home(ethd_loop *l, const double *q) {
   return status;
 }
 
-/* Gives the thread up, unless its step ends first; the first of thread and [main] to ask has the device. */
+/* Gives the thread up, unless its step ends first; the first of the two, the thread or [main], gets the device. */
 static ethd_status give_up_thread(ethd_loop *l) {
   int64_t step = atomic_load_explicit(&l->stepping, memory_order_acquire);
   bool taken = step > 0 && atomic_compare_exchange_strong(&l->stepping, &step, ETHD__LOOP_LEFT);

@@ -1,4 +1,4 @@
-/* The thread that watches the loop's thread and makes the device safe when that one is dead. */
+/* The thread that watches the loop's thread: it disarms the device when the loop's thread is dead. */
 #include <stdbool.h>
 #include <time.h>
 
@@ -22,7 +22,7 @@ static int64_t left_to_live(const ethd_loop *l, const watch *w) {
   return by_gap < by_step ? by_gap : by_step;
 }
 
-/* Makes the device safe from this thread, and tells the loop in case it lives again at this moment. */
+/* Disarms the device from this thread, and raises the fault in case the loop resumes at this moment. */
 static void let_go(ethd_loop *l) {
   ethd_loop_raise(l, ETHD_FAULT_LOOP);
   ethd_loop_disarm(l);

@@ -1,5 +1,5 @@
-/* Xenomai 3: started by hand, on the main thread. On Cobalt a thread that leaves primary mode is told so by
-   a signal, which only counts. */
+/* Xenomai 3: started by a call on the main thread. On Cobalt a signal reports that a thread left primary mode; its
+   handler only counts. */
 #include <math.h>
 
 #include "loop/loop.h"
@@ -8,8 +8,8 @@
 #include <signal.h>
 #include <xenomai/init.h>
 
-/* Xenomai gets an argv of our own, because its options are not the program's. Mercury would end the process where memory
-   may not be locked; the loop locks it by itself, and says so if it can't. */
+/* Xenomai gets an argv of our own, because its options are not the program's. Mercury would end the process where
+   memory may not be locked; the loop locks it by itself, and says so if it can't. */
 static void initialise(void) {
   static char name[] = "ethd";
 #if defined(__MERCURY__)

@@ -12,8 +12,8 @@ ETHD_MUST_CHECK ethd_status ethd__limits_event(ethd_recording *recording, const 
 ETHD_MUST_CHECK ethd_status ethd__dynamics_event(ethd_recording *recording, const ethd_setup *was,
                                                  const ethd_setup *is);
 
-/* Writes the event `clock`: the date at the instant of a tick that has just come, by the monotonic clock if the device's
-   instants are that clock's. */
+/* Writes the event `clock`: the date at the instant of a tick that has just come, by the monotonic clock if the
+   device's instants are that clock's. */
 ETHD_MUST_CHECK ethd_status ethd__clock_event(ethd_recording *recording, int64_t instant);
 
 #endif

@@ -23,7 +23,7 @@ typedef struct verification {
   size_t next; /* event */
   ethd_setup setup;
   double heat[2];              /* of the motors, by the last event of that kind */
-  double learned[ETHD_MEMORY]; /* by the law */
+  double learned[ETHD_MEMORY]; /* the law's memory, by the last event of that kind */
   ethd_control *control;
   const ethd__record_event *missing; /* the event that says that ticks are missing; NULL: none is */
   char *message;

@@ -105,7 +105,7 @@ static ethd_status check_name(const table *r, const cell *c, const layout *l) {
   return ETHD_OK;
 }
 
-/* Reads a name. Other columns than the wanted ones may have any name, or none. */
+/* Reads a name. Columns that the caller doesn't need may have any name, or none. */
 static ethd_status header_name(const table *r, const cell *c, layout *l, const char *const *wanted, ethd_csv *out) {
   char quote[ETHD_QUOTE_MAX];
   double number;

@@ -1,5 +1,6 @@
-/* Reaches files and folders by their paths. Every reader and writer of this project does so here, so that one rule holds
-   for all: below a received folder, which another person made, no link is followed, and no path leads out of it.
+/* Reaches files and folders by their paths. Every reader and writer of this project does so here, so that one rule
+   holds for all: below a folder from another person (a received folder) no link is followed, and no path leads out of
+   it.
 
    Functions return -1 or NULL on failure, with errno: ELOOP is a link and EXDEV a way out of a received folder, which
    ethd__file_why says in words. No descriptor is 0, 1 or 2, even where the program was started without these: what is

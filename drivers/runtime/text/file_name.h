@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 #define ETHD_FILE_WORD_MAX 32  /* bytes, the closing 0 included */
-#define ETHD_FILE_NAME_MAX 128 /* bytes of a file name */
+#define ETHD_FILE_NAME_MAX 128 /* the closing 0 included, too */
 
 /* What ethd__file_word accepts, for messages. */
 #define ETHD_FILE_WORD "a word of up to 31 letters, digits, _ . + -"

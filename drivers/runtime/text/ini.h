@@ -25,7 +25,7 @@ typedef struct ethd_ini_section {
 
 typedef struct ethd_ini {
   ethd_ini_key *keys;         /* in the order of the file */
-  ethd_ini_section *sections; /* in the order of the file; those without keys too */
+  ethd_ini_section *sections; /* in the order of the file, with those that have no keys */
   uint32_t count, section_count;
 } ethd_ini;
 

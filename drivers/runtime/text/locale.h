@@ -2,8 +2,8 @@
    matplotlib do: then printf writes 0,5, strtod stops at the point of 0.5, and letters and their
    order are the language's. A host may also have set another rounding, or traps, which printf and strtod obey.
 
-   The Makefile includes this file before each source of drivers and apps, so that the names below mean text in the C locale,
-   rounded to nearest. Here alone is the C library asked (tests/symbols.sh). The thread has its locale and its
+   The Makefile includes this file before each source of drivers and apps, so that the names below mean text in the C
+   locale, rounded to nearest. Here alone is the C library asked (tests/symbols.sh). The thread has its locale and its
    floating-point environment back after each call. All [any]. */
 #ifndef ETHD__TEXT_LOCALE_H
 #define ETHD__TEXT_LOCALE_H

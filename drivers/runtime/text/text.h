@@ -11,9 +11,9 @@
 /* Returns what stands behind a noun after its number: "" for 1, else "s". [any] */
 static inline const char *ethd__s(uint64_t count) { return count == 1 ? "" : "s"; }
 
-/* Reads a whole file, without a mark of UTF-8 before it, and puts a 0 after it; the caller frees it. Refuses a file that is missing, a folder, a device, or
-   over `most` bytes; a pipe may have 1 GiB at most, and a signal ends the wait for it. A file's holes take no memory.
-   The text may have 0 bytes: callers decide. */
+/* Reads a whole file, skips a byte order mark of UTF-8, and appends a 0; the caller frees it. Refuses a file that is
+   missing, a folder, a device, or over `most` bytes; a pipe may have 1 GiB at most, and a signal ends the wait for it.
+   A file's holes take no memory. The text may have 0 bytes: callers decide. */
 ETHD_MUST_CHECK ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *length,
                                            char message[ETHD_MESSAGE_MAX]);
 
@@ -21,10 +21,10 @@ ETHD_MUST_CHECK ethd_status ethd_text_read(const char *path, size_t most, char *
 ETHD_MUST_CHECK ethd_status ethd_text_write(const char *path, const char *text, size_t length,
                                             char message[ETHD_MESSAGE_MAX]);
 
-/* A file that is written beside its path and takes the path's place when it is complete. Only a regular file, or nothing,
-   is replaced: behind a link to one, the one that it leads to (not below a received folder, see text/file.h). A pipe, a
-   terminal or another character device is written directly, and so is a descriptor that the program was started with,
-   under the names /dev/stdout, /dev/stderr, /dev/fd/N and /proc/self/fd/N. All else is refused. */
+/* A file that is written beside its path and takes the path's place when it is complete. Only a regular file, or
+   nothing, is replaced: behind a link to one, the one that it leads to (not below a received folder, see text/file.h).
+   A pipe, a terminal or another character device is written directly, and so is a descriptor that the program was
+   started with, under the names /dev/stdout, /dev/stderr, /dev/fd/N and /proc/self/fd/N. All else is refused. */
 typedef struct ethd_replace {
   FILE *file;
   char *path, *temporary; /* temporary NULL: it is written directly */
@@ -39,14 +39,14 @@ void ethd_replace_abandon(ethd_replace *replace);
    large for a double is refused. text[length] must be readable and not part of a number. */
 bool ethd__number(const char *text, size_t length, double *out);
 
-/* Returns whether min <= value <= max. A NaN isn't, and takes none of an application's floating-point traps, as it would in
-   a plain comparison. [any] */
+/* Returns whether min <= value <= max. A NaN isn't, and raises no floating-point trap, as a plain comparison would.
+   [any] */
 static inline bool ethd__is_within(double value, double min, double max) {
   return isgreaterequal(value, min) && islessequal(value, max);
 }
 
-/* Whether a plugin's text, which may be NULL or never end, has 1 to `most` characters: of these letters alone; printable
-   ASCII, one line without what terminals obey. */
+/* Return whether a plugin's text, which may be NULL or unterminated, has 1 to `most` characters: only characters of
+   `letters`; one line of printable ASCII without control characters. */
 bool ethd__text_is_word(const char *text, size_t most, const char *letters);
 bool ethd__text_is_line(const char *text, size_t most);
 
