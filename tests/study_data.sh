@@ -179,7 +179,7 @@ refuse 2 'SHA256SUMS: No such file' "$study" --merge "$folder/station1" "$folder
 
 # ---- own words: printed as they can be read again; unknown names, places and letters are refused ----
 "$study" --words >"$folder/words.study" && "$study" "$folder/words.study" --plan >"$folder/out" 2>&1 || fail "--words: $(cat "$folder/out")"
-[ "$(wc -l <"$folder/words.study")" = 47 ] && grep -q '^keys_thanks = Space ends$' "$folder/words.study" || fail "--words: $(cat "$folder/words.study")"
+[ "$(wc -l <"$folder/words.study")" = 48 ] && grep -q '^keys_thanks = Space ends$' "$folder/words.study" || fail "--words: $(cat "$folder/words.study")"
 words() { # SECTION LINE PATTERN
   printf '[study]\nsurvey = on\n[%s]\n%b\n' "$1" "$2" >"$folder/own.study"
   refuse 2 "own.study:4: $1.$3" "$study" "$folder/own.study" --plan

@@ -20,14 +20,18 @@ void ethd__page_of_hand_over(const ethd__questionnaire *q, const ethd__meeting *
 
 /* Nobody types the next one's number by chance. */
 static ethd__wish hand_over(ethd__screen *s, const ethd__meeting *meeting) {
-  char line[32] = "", text[256];
+  const ethd__questionnaire *q = &s->protocol->questionnaire;
+  char line[32] = "", text[256], refused[256] = "";
   ethd__page page;
   do {
-    ethd__page_of_hand_over(&s->protocol->questionnaire, meeting, "", &page, text);
+    ethd__page_of_hand_over(q, meeting, "", &page, text);
     page.count--; /* what is typed takes the last paragraph's place */
+    ethd__page_add(&page, ETHD_TEXT_SMALL, refused, ethd__red);
     *line = 0;
     if (!ethd__screen_type(s, &page, line, sizeof line))
       return s->window.key == SDLK_F2 && meeting->can_undo && !s->stop ? ETHD_WISH_UNDO : ETHD_WISH_STOP;
+    ethd__phrase_fill(refused, sizeof refused, ethd__phrase_of(q, ETHD_PHRASE_OTHER_ONE),
+                      (const char *[]){line, meeting->participant}, 2);
   } while (strcasecmp(line, meeting->participant) != 0);
   return ETHD_WISH_GO;
 }

@@ -29,6 +29,7 @@
   X(STOPPED, "stopped", "The device has stopped itself")                                                         \
   X(CALL, "call", "Thank you. Please call the experimenter.")                                                    \
   X(HAND_OVER, "hand_over", "Experimenter: when {1} sits here, type {1} and press Enter")                        \
+  X(OTHER_ONE, "other_one", "\"{1}\" was typed; it is the turn of {2}")                                          \
   X(ANSWERS, "answers", "Are these your answers?")                                                               \
   X(NO_ANSWER, "no_answer", "no answer")                                                                         \
   X(THANKS, "thanks", "That was all. Thank you!")                                                                \

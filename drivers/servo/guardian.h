@@ -50,8 +50,7 @@ typedef struct ethd__guardian {
    spacing is an exchange, or the time that one unanswered message may take. [any] */
 int64_t ethd__guardian_bound(const ethd__servo_map *map, int64_t exchange_ns);
 
-/* Returns a sentence with the way out where the guardian ends with this program, whatever ends that; else NULL. [main]
-   */
+/* Returns a sentence with the way out where the guardian ends whenever this program ends; else NULL. [main] */
 const char *ethd__guardian_ends(void);
 
 /* Writes what else may end both at once where this process runs, for people: a container, a control group that is

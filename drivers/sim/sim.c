@@ -9,7 +9,7 @@
 #include "sim/sensors.h"
 #include "sim/series.h"
 
-/* NaN, infinities and quotients by 0 belong to the model, as what a sensor says that sees nothing. Each public function that
+/* NaN, infinities and quotients by 0 belong to the model, as of a sensor that sees nothing. Each public function that
    may meet them takes no trap that an application has set. */
 #define APART __attribute__((noinline)) static
 

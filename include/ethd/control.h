@@ -85,8 +85,7 @@ ETHD_API void ethd_setup_fill(ethd_setup *setup, const ethd_sizes *sizes);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_sizes_check(const ethd_sizes *sizes, ethd_error *error);
 
 /* Choose a law or a method and set its parameters to their defaults. What isn't one (NULL, a number beyond the methods,
-   a law with too many parameters) is left for ethd_setup_check to refuse; a setup that is refused is left alone. [any]
-   */
+   a law with too many parameters) is left for ethd_setup_check to refuse; a refused setup is left alone. [any] */
 ETHD_API void ethd_setup_tracking(ethd_setup *setup, const ethd_tracking_law *law);
 ETHD_API void ethd_setup_contact(ethd_setup *setup, const ethd_contact_law *law);
 ETHD_API void ethd_setup_transition(ethd_setup *setup, const ethd_transition_law *law);

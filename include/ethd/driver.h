@@ -113,8 +113,7 @@ struct ethd_driver {
      [main] */
   ethd_status (*prepare)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
   /* Returns which joints the device measures: bit 0 joint 1, bit 1 joint 2. It is asked of what `prepare` left, before
-     anything is opened: a device of which one joint alone is measured is refused. NULL: not known, may be both. [main]
-     */
+     anything is opened: a device with one measured joint alone is refused. NULL: not known, may be both. [main] */
   uint32_t (*joints)(const void *device);
 };
 

@@ -1,5 +1,4 @@
-/* Parameters as tables: the table is the documentation (ethd-check --laws prints it) and the check. Links from libethd.
-   */
+/* Parameters as tables: the table is documentation (ethd-check --laws prints it) and check. Links from libethd. */
 #ifndef ETHD_PARAM_H
 #define ETHD_PARAM_H
 

@@ -66,7 +66,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
      heat        detail: h1 h2. The motors' heat, see ethd_control_heat
      learned     detail: m1 m2 m3 m4. What the transition law has learnt, see ethd_control_memory
      fault       detail: a sentence for people
-     clock       detail: ns date. The date (UTC) at an instant of the ticks' time_ns, once in a recording of a real device:
+     clock       detail: ns date. The date (UTC) at an instant of time_ns, once in a recording of a real device:
                  12345678901234 2026-11-26T04:12:12.123456789Z
      lost        detail: how many ticks are missing before this row, which therefore can't be replayed
      thinned     detail: how. tick.npy holds only some of the ticks, so the recording can't be replayed

@@ -27,7 +27,7 @@ enum {
 /* The speed of the hand on its synthetic path; every plant file names one. */
 enum {
   ETHD_PROFILE_CONSTANT,     /* V between two ramps */
-  ETHD_PROFILE_MINIMUM_JERK, /* that of human reaches (Flash and Hogan 1985): x0 + D (10 s^3 - 15 s^4 + 6 s^5), s = t/T */
+  ETHD_PROFILE_MINIMUM_JERK, /* human reaches (Flash and Hogan 1985): x0 + D (10 s^3 - 15 s^4 + 6 s^5), s = t/T */
 };
 
 #define ETHD_SIM_DELAY_PERIODS 8

@@ -73,8 +73,7 @@ int32_t ethd__guard_limit(const ethd_limits *limits, const ethd_guard_device *de
   return bits;
 }
 
-/* The rate's window may lie outside of the limits, when one has just become stricter, so the limits have the last word.
- */
+/* The rate's window may lie outside of limits that have just become stricter, so the limits have the last word. */
 int32_t ethd__guard_finish(const ethd_limits *limits, ethd_guard_state *s, const ethd__guard_faded *faded, double dt,
                            int32_t bits, double torque[2]) {
   const bool rated = limits->torque_rate < (double)INFINITY && !ethd__guard_stops(s, bits);

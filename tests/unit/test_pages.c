@@ -315,6 +315,34 @@ TEST(test_a_study_in_german) {
   ethd__protocol_free(&protocol);
 }
 
+static void press(SDL_Keycode key) {
+  SDL_Event e = {.key = {.type = SDL_KEYDOWN, .keysym = {.sym = key}}};
+  ck_assert_int_eq(SDL_PushEvent(&e), 1);
+}
+
+/* Who types another one's number is told so, and is asked again. */
+TEST(test_another_number) {
+  const ethd__meeting meeting = {"P12", true, false, false};
+  SDL_Event typed = {.text = {.type = SDL_TEXTINPUT, .text = "P2"}};
+  char message[ETHD_MESSAGE_MAX];
+  bool said = false;
+  ck_assert_int_eq(setenv("SDL_VIDEODRIVER", "dummy", 1), 0);
+  memset(&screen, 0, sizeof screen);
+  screen.protocol = &protocol;
+  ck_assert_msg(!ethd__window_open(&screen.window, "pages", 640, 480, message), "%s", message);
+  press(SDLK_SPACE); /* a page's first frame takes no letters */
+  SDL_PushEvent(&typed);
+  press(SDLK_2);
+  press(SDLK_RETURN);
+  press(SDLK_SPACE);
+  press(SDLK_ESCAPE);
+  ck_assert_int_eq(ethd__screen_meet(&screen, &meeting), ETHD_WISH_STOP);
+  for (size_t i = 0; i < ETHD_SHAPES_MAX; i++)
+    said |= !strcmp(screen.window.shape[i].text, "\"P2\" was typed; it is the turn of P12");
+  ck_assert(said);
+  ethd__window_close(&screen.window);
+}
+
 TEST(test_letters_that_the_font_lacks) {
   static const struct {
     const char *study, *message;

@@ -1,6 +1,5 @@
 /* CSV: a header row of names, then rows of numbers, with LF or CRLF at the end of each line. Cells are separated by
-   commas; in a file whose header has no comma, by semicolons or tabs, and numbers may have a decimal comma. All [main].
-   */
+   commas; if the header has no comma, by semicolons or tabs, and numbers may have a decimal comma. All [main]. */
 #ifndef ETHD__TEXT_CSV_H
 #define ETHD__TEXT_CSV_H
 
