@@ -60,12 +60,12 @@ fi
 [ "$(wc -l <README.md)" -lt 150 ] || fail "$(wc -l <README.md) lines: fewer than 150 are read"
 
 # The picture: of this script and these ticks, which are the same everywhere; its pixels depend on gnuplot and its fonts.
-drawn=323e1509100cfa85f1ad261be7f6071c4ca5fb1ca9380f253086fe6925081d80
-"$BUILD/bin/ethd-tap" --taps 400 --transition offset --speed high --trace "$work/traces" >/dev/null
+drawn=ea89258f5ba7810611a2779970cd6e82e533546ea21af945fab20a98333c406b
+"$BUILD/bin/ethd-tap" --plant q --taps 400 --transition offset --speed high --trace "$work/traces" >/dev/null
 [ "$(cat apps/plot/tap.gp "$work/traces/offset-high.csv" apps/plot/offset.png | sha256sum)" = "$drawn  -" ] ||
   fail "the picture isn't what is drawn today. Look at a new one, and give its sum here:
-  build/bin/ethd-tap --taps 400 --transition offset --speed high --trace traces
-  gnuplot -e \"in='traces/offset-high.csv'; out='apps/plot/offset.png'; title='offset, high speed'; scale=0.68\" apps/plot/tap.gp
+  build/bin/ethd-tap --plant q --taps 400 --transition offset --speed high --trace traces
+  gnuplot -e \"in='traces/offset-high.csv'; out='apps/plot/offset.png'; title='offset, high speed'; plant='q'; scale=0.68\" apps/plot/tap.gp
   cat apps/plot/tap.gp traces/offset-high.csv apps/plot/offset.png | sha256sum"
 
 for n in 1 2; do echo "block $n: $(wc -l <"$work/$n.c") lines"; done

@@ -28,7 +28,7 @@ static const char doc[] =
     "bands of its own.\n\n"
     "Figures, along the wall's normal, positive into it:\n"
     "  v_rvo    the ring's speed as it meets the wall\n"
-    "  v_of     the ring's speed as the finger touches it, between two ticks; 0 is a wall's\n"
+    "  v_of     the ring's speed at the touch, between two ticks; 0 is a wall's\n"
     "  d_max    the ring's first rebound in the wall, of 0.1 mm at least\n"
     "  v_rmin   its smallest speed after the touch: how fast it is thrown back\n"
     "  Delta_s  the time of braking\n"

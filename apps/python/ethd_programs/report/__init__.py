@@ -15,7 +15,7 @@ Examples:
   ethd-report session
   ethd-report left-room right-room --out report
   ethd-report session --beside crowd --tap P02-06-004
-  ethd-study my.study --simulate 200 --out crowd && ethd-study --merge crowd && ethd-report --power crowd
+  ethd-report crowd --power
 """
 
 
