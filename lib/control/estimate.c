@@ -39,6 +39,8 @@ static double seconds(int64_t a, int64_t b) { return 1e-9 * (double)((uint64_t)b
    clock is wrong, and the ticks' time counts. */
 static double sample_spacing(const ethd__tick *t) {
   const double period = t->plan->setup.period;
+  const uint64_t passed = (uint64_t)t->sense->time_ns - (uint64_t)t->state->velocity_ns;
+  if (passed == (uint64_t)t->plan->period_ns && t->dt == period) return t->dt; /* nearly always */
   if (t->sense->time_ns <= t->state->velocity_ns) return t->dt;
   const double stamped = seconds(t->state->velocity_ns, t->sense->time_ns), off = fabs(stamped - t->dt);
   const bool used = off > ROUNDED * period && off <= fmin(t->plan->setup.limits.gap, GAP) && stamped >= LEAST * period;
@@ -48,7 +50,11 @@ static double sample_spacing(const ethd__tick *t) {
 static void joint_speeds(const ethd__tick *t, double qd[2]) {
   const double dt = sample_spacing(t);
   t->state->velocity_ns = t->sense->time_ns;
-  for (int i = 0; i < 2; i++) qd[i] = t->sense->have & ETHD_HAVE_DQ ? t->sense->dq[i] : joint_speed(t, dt, i);
+  if (t->sense->have & ETHD_HAVE_DQ) {
+    memcpy(qd, t->sense->dq, sizeof t->sense->dq);
+  } else {
+    for (int i = 0; i < 2; i++) qd[i] = joint_speed(t, dt, i);
+  }
 }
 
 /* Returns the instant `s` seconds before another one; wraps round like the clock. */

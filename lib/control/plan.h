@@ -15,6 +15,7 @@ static inline const ethd_scene *ethd__place_scene(const ethd_setup *setup, int p
 
 typedef struct ethd__plan {
   ethd_setup setup;
+  int64_t period_ns;    /* setup.period, rounded */
   double d_beta;        /* R_r - R_f,max, m */
   int places;           /* places from here on have no scene */
   bool has_rare_limits; /* a limit is set that most setups don't have: gap, joints, reach, heat */

@@ -169,6 +169,7 @@ ETHD__FP_APART static ethd_status prepare(const ethd_setup *s, ethd__plan *out, 
   out->has_rare_limits = has_rare_limits(&s->limits);
   out->watches_finger = fmin(s->limits.finger_age, s->limits.finger_lost) < (double)INFINITY;
   out->watches_energy = s->limits.energy < (double)INFINITY;
+  out->period_ns = (int64_t)(1e9 * s->period + 0.5);
   out->d_beta = s->ring_radius - s->finger_radius_max;
   TRY(within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error), error));
   TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error),
