@@ -226,10 +226,14 @@ printf '[study]\ntraining = 1\ntaps = 1\nattempts = 6\n[grid]\ncontact.k_e = 100
   "$study" "$folder/ticks.study" --simulate 4 --shard 2/2 --ticks --out "$folder/ticks" >/dev/null &&
   "$study" --merge "$folder/ticks" >/dev/null || fail "the simulation's taps"
 drawn "$folder/ticks/report" "$folder/ticks" --point 1
-grep -o 'figcaption>As figures 9 to 12 of the paper: [^<]*' "$folder/ticks/report/report.html" >"$folder/captions"
-[ "$(wc -l <"$folder/captions")" = 4 ] || fail "not a trace for each cell: $(cat "$folder/captions")"
-while read -r _ _ _ _ _ _ _ _ law speed _ tap _; do
+grep -o 'figcaption>As figure [0-9]* of the paper, a tap of one participant: [^<]*' "$folder/ticks/report/report.html" >"$folder/captions"
+[ "$(cut -d' ' -f3 "$folder/captions" | sort -u | wc -l)" = 4 ] || fail "not a trace for each cell: $(cat "$folder/captions")"
+while read -r _ _ number _ _ _ _ _ _ _ _ law speed _ tap _; do
   law=${law%,} speed=${speed%,} tap=${tap%,} chosen="$tap $law-$speed"
+  case "$number $law-$speed" in
+    "9 smooth-low" | "10 offset-low" | "11 smooth-high" | "12 offset-high") ;;
+    *) fail "figure $number of the paper is another cell than $law, $speed" ;;
+  esac
   [ -d "$folder/ticks/taps-2-of-2/$tap" ] || fail "$tap isn't recorded"
   sed 's/-/,/g; s/,0*/,/g' <<END | { IFS=, read -r point person block attempt
 $tap

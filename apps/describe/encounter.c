@@ -10,7 +10,7 @@
 #define BEYOND 0.002
 #define STOPPING 0.04
 #define WAITING 0.12
-#define SPEED 0.2 /* m/s */
+#define SPEED 0.4 /* m/s: at half of it the wall moves too little to be seen */
 
 static double speed_at(double t) {
   const double comes = (BEFORE + BEYOND) / SPEED, stands = comes + STOPPING, turns = stands + WAITING;
@@ -51,7 +51,7 @@ ethd_status ethd__encounter_write(const ethd__folder *folder, const char *law, c
   ethd__stage stage;
   ethd_sim_tap tap;
   make_movement(&study);
-  if (!ethd__speed_parse("0.2", &study.plant, &speed)) return ETHD_E_RANGE;
+  if (!ethd__speed_parse("0.4", &study.plant, &speed)) return ETHD_E_RANGE;
   study.speeds = &speed;
   study.speed_count = 1;
   ethd_status status = ethd__study_prepare(&study, message);

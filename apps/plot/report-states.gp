@@ -27,7 +27,7 @@ set tics nomirror textcolor rgb "#333333" scale 0.6
 set xrange [from:to]
 set yrange [0:1.15]
 set ytics 0.25
-set ylabel "{/Symbol b}" offset 1.5
+set ylabel "{/Symbol b}" offset 1.5 textcolor rgb "#2e7d4f"
 unset key
 t(x) = 1e3*column("since_wall_s")
 set lmargin at screen 0.08
@@ -45,8 +45,9 @@ set label 1 "Active state and weight {/Symbol b} of the tracking torque" at scre
 set label 2 note at screen 0.08,1 - 50.0/high font "Sans,13" textcolor rgb grey
 array names[3] = ["transparent", "braking", "vo"]
 do for [k=0:2] {
-  set object 10 + k rectangle from screen 0.645 + 0.125*k,1 - 58.0/high to screen 0.66 + 0.125*k,1 - 42.0/high fc rgb tint(k) fs solid border lc rgb grey
-  set label 10 + k names[k + 1] at screen 0.667 + 0.125*k,1 - 50.0/high font "Sans,14" textcolor rgb "#333333"
+  at_x = real(word("0.665 0.79 0.885", k + 1))
+  set object 10 + k rectangle from screen at_x,1 - 58.0/high to screen at_x + 0.015,1 - 42.0/high fc rgb tint(k) fs solid border lc rgb grey
+  set label 10 + k names[k + 1] at screen at_x + 0.022,1 - 50.0/high font "Sans,14" textcolor rgb "#333333"
 }
 do for [i=0:n-1] {
   file = word(in, i + 1)
@@ -56,12 +57,16 @@ do for [i=0:n-1] {
   set arrow 1 from 0,0 to 0,1.15 nohead lc rgb "#999999" lw 1.2 front
   eps = NaN
   stats file using (t(0) <= to && strlen(strcol("offset_wall_m")) ? (eps = 1e3*column("offset_wall_m")) : 0, 0) nooutput
-  if (eps == eps) { set label 2 sprintf("{/Symbol e} %.2f mm", eps) at graph 0.985, second eps right offset 0,-0.7 front font "Sans,13" textcolor rgb "#d98a00" }
-  plot file using (t(0) + 0.5):(1.15):(1.03):(tint(int(column("state")))) with boxes lc rgb variable fs solid 1 noborder, \
+  if (eps == eps) {
+    set arrow 2 from graph 0.6, second 0 to graph 0.6, second eps heads size screen 0.003,90 front lc rgb "#8a5700" lw 1.6
+    set label 2 sprintf("{/Symbol e} %.2f mm", eps) at graph 0.608, second eps offset 0,-0.75 front font "Sans,13" textcolor rgb "#8a5700"
+  }
+  # a tick's box is wider than the tick, so that no seam shows within a state
+  plot file using (t(0) + 0.5):(1.15):(1.5):(tint(int(column("state")))) with boxes lc rgb variable fs solid 1 noborder, \
     file using (t(0)):(1e3*column("ring_m")) axes x1y2 with lines lc rgb "#c0392b" lw 1.4 dt (6,3), \
     0 axes x1y2 with lines lc rgb "#7a7a7a" lw 1.2, \
     file using (t(0)):(eps == eps ? 1e3*column("offset_wall_m") : 0) axes x1y2 with lines lc rgb "#d98a00" lw 2.4, \
     file using (t(0)):"beta" with steps lc rgb "#2e7d4f" lw 2.6
-  unset label; unset object
+  unset label; unset object; unset arrow
 }
 unset multiplot

@@ -75,7 +75,9 @@ def _draw_boxes(r: Report, taps: Taps, prefix: str, name: str, metrics: str, hea
 def _pictures(r: Report, taps: Taps, prefix: str, whose: str) -> None:
     _write_boxes(r, taps, prefix)
     _draw_boxes(r, taps, prefix, "boxes", "v_rvo v_of d_max v_rmin", f"Taps on a virtual wall: {whose}",
-                f"As figures 14 to 17 of the paper, {whose}. Speeds are positive toward the wall. Of more than {_DOTS} taps in a "
+                "As figures 14 to 17 of the paper, which show nine taps in each cell: the ring's speed as it meets the wall (14) and as the finger "
+                f"touches it (15), its first rebound (16) and its smallest speed after the touch (17). Here: {whose}. Speeds are positive toward "
+                f"the wall. Of more than {_DOTS} taps in a "
                 "cell every second, third and so on is drawn.")
     if any(len(c.values(QUANTITIES["delta_s"])) for c in taps.cells):
         _draw_boxes(r, taps, prefix, "braking", "delta_s eps", f"Braking: {whose}",

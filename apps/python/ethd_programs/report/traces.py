@@ -139,6 +139,10 @@ def _write(r: Report, name: str, tick: Ticks, truth: Ticks, finger_radius: float
             f"to {asked:.0f} N at the ring, and the guard lets through at most {let:.1f} N.")
 
 
+#: The paper's figures of single taps, by strategy and speed.
+_FIGURES = {("smooth", "low"): 9, ("offset", "low"): 10, ("smooth", "high"): 11, ("offset", "high"): 12}
+
+
 def traces(r: Report) -> None:
     r.page.heading("traces", "Traces of single taps")
     r.page.put("<p>Ring and finger go on into the virtual wall after the touch; each caption says how far. That is no error of the drawing: the "
@@ -158,7 +162,9 @@ def traces(r: Report) -> None:
         assert recording
         depth = _write(r, f"{table}.csv", *_read(r, recording), float(cell.figures["finger_radius_m"][chosen]))
         which = "" if r.tap else ", of the valid ones that are recorded the one nearest to their means"
-        r.draw("tap.gp", f"{table}.png", f"As figures 9 to 12 of the paper: {cell.label}, tap {tap}{which}.{depth}",
+        number = _FIGURES.get((cell.law, cell.speed.word))
+        like = f"As figure {number} of the paper, a tap of one participant" if number else "In the manner of figures 9 to 12 of the paper"
+        r.draw("tap.gp", f"{table}.png", f"{like}: {cell.label}, tap {tap}{which}.{depth}",
                {"in": Path(f"{table}.csv"), "title": f"{cell.label} speed", "plant": "" if r.measured else r.folder.facts["plant"] or "n"})
         drawn.append(cell)
     if not drawn and r.tap:
@@ -169,8 +175,8 @@ def traces(r: Report) -> None:
     r.draw("report-states.gp", "states.png",
            "Of the same taps: the active state, and the weight of the tracking torque, which stays continuous while the wall moves. Where a "
            "strategy has no states, vo stands for the ring in the wall. The recordings end soon after the touch.",
-           {"in": " ".join(f"trace-{c.law}-{c.speed.word}.csv" for c in drawn), "titles": " ".join(f"{c.law}-{c.speed.word}" for c in drawn),
-            "note": "the taps above; dashed: the ring's front; orange: the wall"})
+           {"in": " ".join(f"trace-{c.law}-{c.speed.word}.csv" for c in drawn), "titles": " ".join(f'"{c.label}"' for c in drawn),
+            "note": "the taps above; dashed: ring's front; orange: the wall; grey: x_e"})
 
 
 def encounter(r: Report) -> None:
@@ -182,8 +188,8 @@ def encounter(r: Report) -> None:
             laws.append(law)
     if laws:
         r.draw("report-states.gp", "encounter.png",
-               "As figure 6 of the paper, a whole encounter: approach at 0.2 m/s, touch, 0.12 s of pressing, retreat, until the ring follows the "
-               "finger freely again. Simulated for this picture with the study's configuration and plant, no tap of the study, whose recordings "
+               "As figure 6 of the paper, which shows a typical encounter under VO-B, with \u03b2, the active state and the offset \u03b5 of the wall: "
+               "approach at 0.4 m/s, touch, 0.12 s of pressing, retreat, until the ring follows the finger freely again. Simulated for this picture with the study's configuration and plant, no tap of the study, whose recordings "
                "end soon after the touch.",
                {"in": " ".join(f"encounter-{law}.csv" for law in laws), "titles": " ".join(laws), "from": "-60",
-                "note": "simulated for this picture; dashed: the ring's front; orange: the wall"})
+                "note": "simulated for this picture; dashed: ring's front; orange: the wall; grey: x_e"})
