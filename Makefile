@@ -346,11 +346,12 @@ bench bench-quick: $(B)/tests/bench $(PEERS) $(SHARE)
 	  'commit $(or $(shell git describe --always --dirty 2>/dev/null),unknown); $(CC) $(BASE)'
 
 # The long ones: hours, of which one test may take any part.
+STRESS := $(patsubst %.c,$(B)/tests/%,$(notdir $(call files,tests/stress/test_*.c)))
 stress: export CK_DEFAULT_TIMEOUT := 360000
 stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_fuzz_decoder \
   $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_store $(B)/tests/test_servo_driver \
   $(B)/tests/test_fuzz_map $(B)/tests/test_promises $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
-  $(B)/tests/volume $(B)/tests/day $(B)/tests/stress
+  $(B)/tests/volume $(B)/tests/day $(STRESS)
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
 	ETHD_PROMISES=1e8 $(B)/tests/test_promises
@@ -372,7 +373,8 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
 # These go on where they were, and say what is left: a release runs them to the end, volume-all.
 	@BUILD='$(abspath $(B))' sh tests/volume.sh 1e9 15
 	@$(B)/tests/day $(B)/day 24 10 2>$(B)/day.err
-	@BUILD='$(B)' SAN='$(SAN)' sh tests/stress/stress.sh
+	for t in $(STRESS); do ETHD_STRESS=1 $$t || exit 1; done
+	@BUILD='$(B)' SAN='$(SAN)' sh tests/stress/frames.sh
 
 # What the tests reach: every branch of lib, 90 % of drivers, the conditions that decide; then how many small bugs they see.
 coverage:

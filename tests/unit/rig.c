@@ -18,10 +18,20 @@ void rig_open(rig *r, const char *scene) {
   if (scene) r->setup.scene = r->scene = rig_scene(scene);
 }
 
-void rig_start(rig *r) {
+ethd_control *rig_control(const ethd_setup *setup) {
+  ethd_control *control;
   ethd_error error;
-  ethd_status status = ethd_control_create(&r->setup, &r->control, &error);
+  ethd_status status = ethd_control_create(setup, &control, &error);
   if (status != ETHD_OK) ck_abort_msg("create: %s: %s", error.name, ethd_status_sentence(status));
+  return control;
+}
+
+void rig_start(rig *r) { r->control = rig_control(&r->setup); }
+
+void rig_set(ethd_setup *setup, const char *name, double value) {
+  ethd_error error;
+  ck_assert_msg(ethd_setup_set(setup, name, value, &error) == ETHD_OK, "%s: %s (found %g, from %g to %g)", error.name,
+                ethd_status_sentence(error.status), error.found, error.min, error.max);
 }
 
 void rig_close(rig *r) {

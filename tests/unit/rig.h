@@ -32,6 +32,12 @@ void rig_open(rig *r, const char *scene);
 void rig_start(rig *r);
 void rig_close(rig *r);
 
+/* A controller of this setup. */
+ethd_control *rig_control(const ethd_setup *setup);
+
+/* Sets a number of a setup by its name. */
+void rig_set(ethd_setup *setup, const char *name, double value);
+
 /* Joint angles and speeds, link 2 turned clockwise from link 1, and the finger as known. */
 ethd_sense rig_sense(const ethd_arm *arm, const motion *m);
 

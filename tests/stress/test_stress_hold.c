@@ -8,8 +8,7 @@
      the law keeps q <= 1/2 */
 #include <math.h>
 
-#include "stress/rig.h"
-#include "stress/stress.h"
+#include "stress/mass.h"
 
 #define PERIOD 0.001
 #define MASS 0.1173
@@ -25,37 +24,37 @@ typedef struct hold_case {
 
 /* Through the whole step. The finger goes with the ring and never leans on it. */
 static double measured_growth(const hold_case *c) {
-  ethd__stress_rig rig;
-  ethd__stress_rig_open(&rig, MASS, 0.01);
-  ethd_setup_transition(&rig.setup, &ethd_transition_predictive);
-  rig.setup.arm.link1 = ETHD__STRESS_RIG_STRAIGHT;
-  rig.setup.dynamics.mass[0] = rig.setup.dynamics.mass[1] = c->share * MASS;
-  rig.setup.limits.torque = 1e6;
-  ethd__stress_set(&rig.setup, "transition.rate", c->q / PERIOD);
-  ethd__stress_set(&rig.setup, "transition.memory", c->b);
-  ethd__stress_set(&rig.setup, "transition.t_max", (double)INFINITY);
-  rig.measured = true;
-  rig.has_finger = true;
-  rig.delay = c->delay;
-  ethd__stress_rig_start(&rig, SPEED);
-  rig.finger_v = (ethd_vec){-SPEED, 0};
+  mass_rig r;
+  mass_open(&r, MASS, 0.01);
+  ethd_setup_transition(&r.on.setup, &ethd_transition_predictive);
+  r.on.setup.arm.link1 = MASS_STRAIGHT;
+  r.on.setup.dynamics.mass[0] = r.on.setup.dynamics.mass[1] = c->share * MASS;
+  r.on.setup.limits.torque = 1e6;
+  rig_set(&r.on.setup, "transition.rate", c->q / PERIOD);
+  rig_set(&r.on.setup, "transition.memory", c->b);
+  rig_set(&r.on.setup, "transition.t_max", (double)INFINITY);
+  r.measured = true;
+  r.has_finger = true;
+  r.delay = c->delay;
+  mass_start(&r, SPEED);
+  r.finger_v = (ethd_vec){-SPEED, 0};
   const int settle = (int)(10 / c->q + 20 / (1 - c->b)), span = (int)(5 / c->q + 10 / (1 - c->b));
   double first = 0, last = 0;
   int k = 0;
   for (int waited = 0; k < settle + span && waited < 2000; waited++) {
     ethd_pose pose;
-    ethd_arm_pose(&rig.setup.arm, rig.q, &pose);
-    rig.finger = pose.x;
-    double before = ethd__stress_rig_depth(&rig);
-    ethd__stress_rig_tick(&rig);
-    double step = fabs(ethd__stress_rig_depth(&rig) - before);
-    if (rig.trace.state != ETHD_BRAKING && k == 0) continue;
-    if (rig.trace.state != ETHD_BRAKING || !(step < 0.01)) break; /* thrown out */
+    ethd_arm_pose(&r.on.setup.arm, r.q, &pose);
+    r.finger = pose.x;
+    double before = mass_depth(&r);
+    mass_tick(&r);
+    double step = fabs(mass_depth(&r) - before);
+    if (r.on.trace.state != ETHD_BRAKING && k == 0) continue;
+    if (r.on.trace.state != ETHD_BRAKING || !(step < 0.01)) break; /* thrown out */
     k++;
     if (k > settle - SWING_TICKS && k <= settle) first = fmax(first, step);
     if (k > settle + span - SWING_TICKS) last = fmax(last, step);
   }
-  ethd__stress_rig_close(&rig);
+  mass_close(&r);
   if (k < settle + span) return (double)INFINITY;
   return last < RESOLUTION ? -(double)INFINITY : log(last / first) / span;
 }
@@ -63,7 +62,7 @@ static double measured_growth(const hold_case *c) {
 /* The same by the recursion alone: the ring's d and v, the observer's, and the accelerations that are still to come. */
 static double linear_growth(const hold_case *c) {
   const double T = PERIOD, rate = c->q / T, g = 1 - c->b;
-  double d = 1e-3, v = 0, D = 1e-3, V = 0, W = 0, told = 0, late[ETHD__STRESS_RIG_DELAY_MAX] = {0}, first = 0, last = 0;
+  double d = 1e-3, v = 0, D = 1e-3, V = 0, W = 0, told = 0, late[MASS_DELAY_MAX] = {0}, first = 0, last = 0;
   enum { SETTLE = 200, SPAN = 400 };
   for (int k = 0; k < SETTLE + SPAN; k++) {
     double model = told + W;
@@ -93,46 +92,38 @@ static double linear_growth(const hold_case *c) {
 /* The slower root. */
 static double closed_growth(double q) { return log((2 - 2 * q - q * q / 2 + q * sqrt(q * q / 4 + 2 * q)) / 2); }
 
-static void settles(ethd__stress_log *results) {
+static void settles(void) {
   static const double qs[] = {0.05, 0.1, 0.2};
   for (int i = 0; i < 3; i++) {
     hold_case c = {qs[i], 0.3, 1, 0};
-    ethd__stress_near(results, "1", linear_growth(&c), closed_growth(qs[i]), 1e-2, "recursion: growth a tick");
-    if (i < 2) ethd__stress_near(results, "1", measured_growth(&c), closed_growth(qs[i]), 3e-2, "law: growth a tick");
+    near(linear_growth(&c), closed_growth(qs[i]), 1e-2, "recursion: growth a tick");
+    if (i < 2) near(measured_growth(&c), closed_growth(qs[i]), 3e-2, "law: growth a tick");
   }
 }
 
 #define DOUBTFUL 0.05 /* growth a tick within which a cell isn't judged */
 
-static void run(ethd__stress_log *results) {
-  int cells = (int)ethd__stress_pick(results, 6, 12, 24);
+TEST(test_hold) {
+  int cells = (int)pick(6, 24);
   int64_t judged = 0, wrong = 0;
-  FILE *data =
-      ethd__stress_data(results, "hold.csv", "delay_ticks,memory,rate_t,told_mass,growth_per_tick,linear_growth");
   static const double memories[] = {0.3, 0.6, 0.9};
-  settles(results);
+  settles();
   for (int n = 0; n <= 2; n++)
     for (int m = 0; m < 3; m++)
       for (int i = 0; i < cells; i++)
         for (int j = 0; j < cells; j++) {
           hold_case c = {0.05 + 0.45 * i / (cells - 1), memories[m], 0.5 + 1.5 * j / (cells - 1), n};
           double is = measured_growth(&c), linear = linear_growth(&c);
-          if (data)
-            fprintf(data, "%d,%g,%.17g,%.17g,%.17g,%.17g\n", n, c.b, c.q, c.share, fmax(fmin(is, 10), -10),
-                    fmax(fmin(linear, 10), -10));
           if (fabs(linear) < DOUBTFUL) continue;
           judged++;
           wrong += (is < -DOUBTFUL / 2) != (linear < 0); /* thrown out of the linear range it swings on */
         }
-  ethd__stress_within(results, "cells", (double)wrong, 0, 0, "cells on the recursion's wrong side");
-  ethd__stress_note(results, "%lld cells of rate, memory, delay and told mass", (long long)judged);
+  ck_assert_int_ge(judged, 150);
+  within((double)wrong, 0, 0, "cells on the recursion's wrong side");
   hold_case usual = {0.5, 0.9, 1, 0};
-  ethd__stress_bound(results, "1", linear_growth(&usual), -0.05, "the default rate and memory: growth a tick");
+  bound(linear_growth(&usual), -0.05, "the default rate and memory: growth a tick");
   for (int n = 0; n < 2; n++) {
     hold_case off = {0.5, 0.9, 1.3, n};
-    ethd__stress_bound(results, "1", linear_growth(&off), 0, "told 30 %% too much mass, %d ticks of delay: growth", n);
+    bound(linear_growth(&off), 0, "told 30 %% too much mass, %d ticks of delay: growth", n);
   }
-  ethd__stress_close(data);
 }
-
-const ethd__stress ethd__stress_hold = {"hold", "the loop that holds the ring before the wall", run};

@@ -8,8 +8,7 @@
 #include <string.h>
 
 #include "ethd/estimate.h"
-#include "stress/rig.h"
-#include "stress/stress.h"
+#include "stress/mass.h"
 
 #define KNOBS_MAX 64
 #define FORCE 5.357 /* N: the device's limit */
@@ -60,15 +59,10 @@ static void turn(ethd_setup *s, const knob *k, int end) {
   } else if (end && !strcmp(k->name, "finger.radius_max")) {
     value = s->ring_radius - SPARE;
   }
-  ethd__stress_set(s, k->name, value);
+  rig_set(s, k->name, value);
 }
 
 /* ---- a tap ---- */
-
-typedef struct setups_tally {
-  int64_t runs, refused, stopped, faults, broken; /* broken: not finite or over the limit */
-  char refusal[320], fault[320], breach[320];
-} setups_tally;
 
 static bool all_finite(const double *v, int n) {
   for (int i = 0; i < n; i++)
@@ -96,75 +90,65 @@ static bool expected(const ethd_setup *s, int64_t fault) {
 }
 
 /* The finger comes as frames of rays and readings of the centre by turns, a little ahead. */
-static void read_finger(const ethd__stress_rig *rig, ethd_sense *s) {
-  ethd_vec centre = {-0.1 * rig->setup.ring_radius, 0.02 * rig->setup.ring_radius};
+static void read_finger(const mass_rig *r, ethd_sense *s) {
+  ethd_vec centre = {-0.1 * r->on.setup.ring_radius, 0.02 * r->on.setup.ring_radius};
   ethd_pose pose;
   s->step_ns = 1000;
   s->sample_ns = s->time_ns;
-  if (rig->tick == 0) {
-    ethd_arm_pose(&rig->setup.arm, s->q, &pose);
+  if (r->tick == 0) {
+    ethd_arm_pose(&r->on.setup.arm, s->q, &pose);
     s->have |= ETHD_HAVE_START;
     s->finger[0] = pose.x.x, s->finger[1] = pose.x.y;
-  } else if (rig->tick % 6 == 3) {
+  } else if (r->tick % 6 == 3) {
     s->have |= ETHD_HAVE_RAYS;
-    ethd_fit_rays(rig->setup.ring_radius, rig->setup.finger_radius, centre, s->rays);
-  } else if (rig->tick % 3 == 0) {
+    ethd_fit_rays(r->on.setup.ring_radius, r->on.setup.finger_radius, centre, s->rays);
+  } else if (r->tick % 3 == 0) {
     s->have |= ETHD_HAVE_CENTRE;
     s->centre[0] = centre.x, s->centre[1] = centre.y;
   }
 }
 
-static void tap(ethd__stress_rig *rig, int ticks, const char *name, setups_tally *t) {
-  ethd_setup other = rig->setup;
+static void tap(mass_rig *r, int ticks, const char *name) {
+  ethd_setup other = r->on.setup;
   ethd_error error;
   ethd_setup_transition(&other, &ethd_transition_smooth);
-  for (int k = 0; k < ticks; k++) {
-    if (k == ticks / 2 && ethd_control_post(rig->control, &other, &error) < 0) t->refused++;
-    ethd_sense sense = ethd__stress_rig_sense(rig);
-    read_finger(rig, &sense);
-    (void)ethd_control_step(rig->control, &sense, &rig->command, &rig->trace);
-    ethd__stress_rig_move(rig);
-    if (rig->trace.fault && expected(&rig->setup, rig->trace.fault)) {
-      t->stopped++;
-    } else if (rig->trace.fault) {
-      t->faults++;
-      snprintf(t->fault, sizeof t->fault, "%s: %s", name, ethd_fault_sentence((ethd_fault)rig->trace.fault));
-    }
-    if (!trace_is_finite(&rig->trace) || !torque_is_held(&rig->trace, rig->setup.limits.torque)) {
-      t->broken++;
-      snprintf(t->breach, sizeof t->breach, "%s, tick %d", name, k);
-    }
-    if (rig->trace.fault) return;
+  for (int k = 0; k < ticks && !r->on.trace.fault; k++) {
+    if (k == ticks / 2)
+      ck_assert_msg(ethd_control_post(r->on.control, &other, &error) == ETHD_OK, "%s: %s", name, error.name);
+    ethd_sense sense = mass_sense(r);
+    read_finger(r, &sense);
+    (void)rig_try(&r->on, &sense);
+    mass_move(r);
+    const ethd_trace *t = &r->on.trace;
+    ck_assert_msg(!t->fault || expected(&r->on.setup, t->fault), "%s: %s", name,
+                  ethd_fault_sentence((ethd_fault)t->fault));
+    ck_assert_msg(trace_is_finite(t), "%s, tick %d: not finite", name, k);
+    ck_assert_msg(torque_is_held(t, r->on.setup.limits.torque), "%s, tick %d: over the torque limit", name, k);
   }
 }
 
-static void one(const ethd_setup *setup, int ticks, const char *name, setups_tally *t) {
-  ethd__stress_rig rig;
-  ethd_error error;
+/* Returns whether a limit of 0 stopped it. */
+static int one(const ethd_setup *setup, int ticks, const char *name) {
+  mass_rig r;
   ethd_limits device = ethd_limits_none();
-  ethd__stress_rig_open(&rig, 0.1173, 0.0002);
-  rig.setup = *setup;
+  mass_open(&r, 0.1173, 0.0002);
+  r.on.setup = *setup;
   device.torque = FORCE * fmin(setup->arm.link1, setup->arm.link2);
-  rig.setup.limits = ethd_limits_narrower(&device, &setup->limits);
-  rig.force_limit = FORCE;
-  t->runs++;
-  if (ethd_setup_check(&rig.setup, &error) < 0) {
-    t->refused++;
-    snprintf(t->refusal, sizeof t->refusal, "%s: %s", name, error.name);
-    return;
-  }
-  ethd__stress_rig_start(&rig, 0.3);
-  tap(&rig, ticks, name, t);
-  ethd__stress_rig_close(&rig);
+  r.on.setup.limits = ethd_limits_narrower(&device, &setup->limits);
+  r.force_limit = FORCE;
+  mass_start(&r, 0.3);
+  tap(&r, ticks, name);
+  mass_close(&r);
+  return r.on.trace.fault != 0;
 }
 
 /* ---- all ends ---- */
 
-static void pairs(const ethd_setup *base, int ticks, setups_tally *t) {
+static int pairs(const ethd_setup *base, int ticks) {
   knobs all;
   char name[192];
   collect(base, &all);
-  one(base, ticks, "defaults", t);
+  int stopped = one(base, ticks, "defaults");
   for (int i = 0; i < all.count; i++)
     for (int k = i; k < all.count; k++)
       for (int ends = 0; ends < (i == k ? 2 : 4); ends++) {
@@ -173,8 +157,9 @@ static void pairs(const ethd_setup *base, int ticks, setups_tally *t) {
         if (k > i) turn(&setup, &all.at[k], ends >> 1);
         snprintf(name, sizeof name, "%s at %s, %s at %s", all.at[i].name, ends & 1 ? "max" : "min", all.at[k].name,
                  (k > i ? ends >> 1 : ends) ? "max" : "min");
-        one(&setup, ticks, name, t);
+        stopped += one(&setup, ticks, name);
       }
+  return stopped;
 }
 
 static const ethd_contact_law *const contacts[] = {&ethd_contact_kelvin_voigt, &ethd_contact_spring,
@@ -183,29 +168,19 @@ static const ethd_transition_law *const transitions[] = {&ethd_transition_offset
                                                          &ethd_transition_abrupt, &ethd_transition_predictive};
 enum { TRANSITIONS = sizeof transitions / sizeof *transitions };
 
-static void run(ethd__stress_log *log) {
-  int quick = log->effort == ETHD__QUICK, ticks = quick ? 60 : 300;
-  setups_tally t = {0};
+TEST(test_parameters) {
+  const int ticks = (int)pick(60, 300);
+  int stopped = 0;
   for (int v = 0; v < ETHD_VELOCITY_COUNT; v++)
     for (int f = 0; f < ETHD_FILTER_COUNT; f++) {
-      if (quick && f != v % ETHD_FILTER_COUNT) continue;
+      if (!pick(0, 1) && f != v % ETHD_FILTER_COUNT) continue;
       ethd_setup base = ethd_setup_default();
       ethd_setup_velocity(&base, (ethd_velocity_method)v);
       ethd_setup_filter(&base, (ethd_filter_method)f);
       ethd_setup_fit(&base, (ethd_fit_method)((v + f) % ETHD_FIT_COUNT));
       ethd_setup_contact(&base, contacts[(v + f) % 3]);
       ethd_setup_transition(&base, transitions[v % 3 == 0 ? 0 : (v + 2 * f) % TRANSITIONS]);
-      pairs(&base, ticks, &t);
+      stopped += pairs(&base, ticks);
     }
-  ethd__stress_within(log, "setups", (double)t.refused, 0, 0, "setups refused of those tried");
-  ethd__stress_within(log, "ticks", (double)t.faults, 0, 0, "faults that no limit asked for");
-  ethd__stress_within(log, "ticks", (double)t.broken, 0, 0, "ticks not finite, or over the torque limit");
-  ethd__stress_note(log, "%lld setups of %d ticks, %lld stopped by a limit of 0", (long long)t.runs, ticks,
-                    (long long)t.stopped);
-  if (t.refused) ethd__stress_note(log, "refused: %s", t.refusal);
-  if (t.faults) ethd__stress_note(log, "fault: %s", t.fault);
-  if (t.broken) ethd__stress_note(log, "broken: %s", t.breach);
+  ck_assert_int_gt(stopped, 900);
 }
-
-const ethd__stress ethd__stress_parameters = {"parameters",
-                                              "every parameter at both ends of its range, alone and in pairs", run};

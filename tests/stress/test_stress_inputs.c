@@ -7,11 +7,9 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "cli/cli.h"
 #include "ethd/control.h"
 #include "ethd/estimate.h"
-#include "stress/rig.h"
-#include "stress/stress.h"
+#include "stress/mass.h"
 
 #define TORQUE 1.34 /* Nm */
 #define WORDS_OF_SENSE (sizeof(ethd_sense) / sizeof(int64_t))
@@ -43,7 +41,7 @@ static ethd_sense good(const ethd_arm *arm, int64_t tick) {
   ethd_vec ring = {0.255 + 0.006 * cos(phase), 0.25};
   memset(&s, 0, sizeof s);
   s.time_ns = tick * 1000000;
-  if (ethd_arm_angles(arm, ring, -1, s.q) < 0) ethd__fail(ETHD_EXIT_FAILED, "out of reach");
+  ck_assert_int_eq(ethd_arm_angles(arm, ring, -1, s.q), ETHD_OK);
   s.finger[0] = ring.x - 0.001, s.finger[1] = ring.y;
   s.centre[0] = -0.001;
   s.ring[0] = ring.x, s.ring[1] = ring.y;
@@ -58,15 +56,11 @@ static ethd_sense good(const ethd_arm *arm, int64_t tick) {
 
 static ethd_control *controller(const ethd_scene *scene, ethd_filter_method filter) {
   ethd_setup setup = ethd_setup_default();
-  ethd_control *control;
-  ethd_error error;
   ethd_setup_transition(&setup, &ethd_transition_smooth);
   ethd_setup_filter(&setup, filter);
   setup.scene = scene;
   setup.limits.torque = TORQUE;
-  if (ethd_control_create(&setup, &control, &error) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
-  return control;
+  return rig_control(&setup);
 }
 
 /* ---- what the contract says ---- */
@@ -177,14 +171,13 @@ static void undisturbed(const ethd_arm *arm, const ethd_scene *scene, int ticks,
   ethd_control_destroy(control);
 }
 
-static void all_words(ethd__stress_log *log, const ethd_arm *arm, const ethd_scene *scene) {
+static void all_words(const ethd_arm *arm, const ethd_scene *scene) {
   const int after = 1600; /* ticks that a huge number takes to fade from a low-pass */
   sense_word list[WORDS_OF_SENSE];
-  size_t count = words(list), hold_count = log->effort == ETHD__QUICK ? 2 : sizeof holds / sizeof *holds;
+  size_t count = words(list), hold_count = (size_t)pick(2, sizeof holds / sizeof *holds);
   inputs_tally sum = {0};
-  for (int ticks = 1; ticks <= 40; ticks += 39) {
+  for (int ticks = 1; ticks <= pick(1, 40); ticks += 39) {
     double calm[2];
-    if (log->effort == ETHD__QUICK && ticks > 1) break;
     undisturbed(arm, scene, BEFORE + ticks + after, calm);
     for (size_t w = 0; w < count; w++)
       for (size_t h = 0; h < (ticks > 1 ? 4 : hold_count); h++) {
@@ -197,18 +190,17 @@ static void all_words(ethd__stress_log *log, const ethd_arm *arm, const ethd_sce
         }
       }
   }
-  ethd__stress_within(log, "ticks", (double)sum.wrong_fault, 0, 0, "faults that the contract doesn't say, or misses");
-  ethd__stress_within(log, "ticks", (double)sum.unsafe, 0, 0, "faults without zero torque and the safe flag");
-  ethd__stress_bound(log, "Nm", sum.torque, TORQUE, "largest torque of a disturbed tick");
-  ethd__stress_bound(log, "Nm", sum.off, 1e-6, "1.6 s later: torque off an undisturbed controller's");
-  ethd__stress_note(log, "%lld disturbances", (long long)sum.cases);
+  within((double)sum.wrong_fault, 0, 0, "faults that the contract doesn't say, or misses");
+  within((double)sum.unsafe, 0, 0, "faults without zero torque and the safe flag");
+  bound(sum.torque, TORQUE, "largest torque of a disturbed tick");
+  bound(sum.off, 1e-6, "1.6 s later: torque off an undisturbed controller's");
 }
 
 /* ---- readings that stop ---- */
 
 /* The finger moves at v, then only the last reading comes again and again: it is late and doesn't count.
    The estimate goes on as the method says: x(t) = x + (v + v(t)) t/2 for each of them. */
-static void frozen(ethd__stress_log *log, const ethd_arm *arm, ethd_filter_method method) {
+static void frozen(const ethd_arm *arm, ethd_filter_method method) {
   const char *id = ethd_filter_methods[method].id;
   ethd_control *control = controller(NULL, method);
   ethd_command c;
@@ -220,7 +212,7 @@ static void frozen(ethd__stress_log *log, const ethd_arm *arm, ethd_filter_metho
     double x = 0.25 - 1e-4 * (double)k, noise = k & 1 ? 1e-4 : -1e-4;
     memset(&s, 0, sizeof s);
     s.time_ns = k * 1000000;
-    if (ethd_arm_angles(arm, (ethd_vec){0.25, 0.25}, -1, s.q) < 0) return;
+    ck_assert_int_eq(ethd_arm_angles(arm, (ethd_vec){0.25, 0.25}, -1, s.q), ETHD_OK);
     if (k % 3 == 0) {
       s.have = k == 0 ? ETHD_HAVE_START : ETHD_HAVE_CENTRE;
       s.finger[0] = x, s.finger[1] = 0.25;
@@ -233,19 +225,16 @@ static void frozen(ethd__stress_log *log, const ethd_arm *arm, ethd_filter_metho
   }
   ethd_counters counters;
   ethd_control_counters(control, &counters);
-  ethd__stress_within(log, "m", t.xf[0] - at, (v + t.vf[0]) / 2, 1e-9,
-                      "%s: way of the finger, 1 s without a new reading", id);
-  ethd__stress_bound(log, "m/s", fabs(t.vf[0]), 0.2, "%s: its speed then; before: 0.1", id);
-  ethd__stress_within(log, "1", (double)counters.readings_dropped, 333, 0, "%s: late readings dropped of 333", id);
+  within(t.xf[0] - at, (v + t.vf[0]) / 2, 1e-9, "%s: way of the finger, 1 s without a new reading", id);
+  bound(fabs(t.vf[0]), 0.2, "%s: its speed then; before: 0.1", id);
+  within((double)counters.readings_dropped, 333, 0, "%s: late readings dropped of 333", id);
   ethd_control_destroy(control);
 }
 
-static void run(ethd__stress_log *log) {
+TEST(test_inputs) {
   ethd_arm arm = ethd_setup_default().arm;
-  ethd_scene *scene = ethd__stress_rig_wall(-0.238);
-  all_words(log, &arm, scene);
+  ethd_scene *scene = rig_scene(RIG_WALL);
+  all_words(&arm, scene);
   ethd_scene_destroy(scene);
-  for (int m = 0; m < ETHD_FILTER_COUNT; m++) frozen(log, &arm, (ethd_filter_method)m);
+  for (int m = 0; m < ETHD_FILTER_COUNT; m++) frozen(&arm, (ethd_filter_method)m);
 }
-
-const ethd__stress ethd__stress_inputs = {"inputs", "NaN, inf, huge, subnormal, stale and frozen measurements", run};

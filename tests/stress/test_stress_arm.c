@@ -5,10 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/cli.h"
 #include "ethd/control.h"
-#include "stress/rig.h"
-#include "stress/stress.h"
+#include "stress/mass.h"
 
 #define K_T 40.0
 
@@ -40,7 +38,7 @@ static double gain_formula(const ethd_arm *arm, const double j[4]) {
   return fmax(damped[0], damped[1]);
 }
 
-static void check_gain(ethd__stress_log *log, const singular_place *p) {
+static void check_gain(const singular_place *p) {
   double q[2], s[2], most = 0, begin = 0;
   ethd_pose pose;
   at(&p->arm, p->bend - asin(ETHD_ARM_SINGULAR), q);
@@ -53,14 +51,14 @@ static void check_gain(ethd__stress_log *log, const singular_place *p) {
       ethd_arm_pose(&p->arm, q, &pose);
       singular(pose.j_inv, s);
       if (off < asin(ETHD_ARM_SINGULAR)) most = fmax(most, s[0]);
-      ethd__stress_near(log, "1/m", s[0], gain_formula(&p->arm, pose.j), 1e-6, "%s: |J^-1|", p->name);
+      near(s[0], gain_formula(&p->arm, pose.j), 1e-6, "%s: |J^-1|", p->name);
       if (s[0] * s[1] > 0 && off > asin(ETHD_ARM_SINGULAR) * 1.001) {
         double eye = hypot(pose.j[0] * pose.j_inv[0] + pose.j[1] * pose.j_inv[2] - 1,
                            pose.j[2] * pose.j_inv[0] + pose.j[3] * pose.j_inv[2]);
-        ethd__stress_bound(log, "1", eye, 1e-13, "%s: |J J^-1 - I| outside of the damping", p->name);
+        bound(eye, 1e-13, "%s: |J J^-1 - I| outside of the damping", p->name);
       }
     }
-  ethd__stress_bound(log, "1/m", most, 1.3 * begin, "%s: |J^-1| <= 1.3 times where damping begins", p->name);
+  bound(most, 1.3 * begin, "%s: |J^-1| <= 1.3 times where damping begins", p->name);
 }
 
 /* Torques of whole steps on a sweep through the singular pose, the finger 5 mm away: largest torque over
@@ -72,13 +70,10 @@ typedef struct torque_sweep {
 
 static torque_sweep through(const singular_place *p, int64_t steps) {
   ethd_setup setup = ethd_setup_default();
-  ethd_control *control;
-  ethd_error error;
   torque_sweep r = {0, 0, 0};
   setup.arm = p->arm;
-  ethd__stress_set(&setup, "tracking.b_t", 0);
-  if (ethd_control_create(&setup, &control, &error) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
+  rig_set(&setup, "tracking.b_t", 0);
+  ethd_control *control = rig_control(&setup);
   double last[2] = {0, 0};
   for (int64_t i = 0; i <= steps; i++) {
     ethd_sense sense;
@@ -100,7 +95,7 @@ static torque_sweep through(const singular_place *p, int64_t steps) {
   return r;
 }
 
-static void run(ethd__stress_log *log) {
+TEST(test_arm) {
   static const singular_place places[] = {
       {{ETHD_ARM_PARALLEL, 0.25, 0.25}, 0, "parallel, stretched"},
       {{ETHD_ARM_PARALLEL, 0.25, 0.25}, M_PI, "parallel, folded"},
@@ -109,16 +104,13 @@ static void run(ethd__stress_log *log) {
       {{ETHD_ARM_PARALLEL, 0.30, 0.12}, 0, "parallel 0.30 + 0.12 m, stretched"},
       {{ETHD_ARM_SERIAL, 0.30, 0.12}, M_PI, "serial 0.30 + 0.12 m, folded"},
   };
-  int64_t steps = ethd__stress_pick(log, 2000, 20000, 20000);
+  int64_t steps = pick(2000, 20000);
   for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
     const singular_place *p = &places[i];
-    check_gain(log, p);
+    check_gain(p);
     torque_sweep coarse = through(p, steps), fine = through(p, 10 * steps);
-    ethd__stress_within(log, "ticks", coarse.bad + fine.bad, 0, 0, "%s: steps at fault or not finite", p->name);
-    ethd__stress_bound(log, "1", fine.load, 1 + 1e-9, "%s: |tau| <= K_t |J^-1| |eps|", p->name);
-    ethd__stress_near(log, "1", fine.jump / coarse.jump, 0.1, 0.05, "%s: a tenth of the step, a tenth of the jump",
-                      p->name);
+    within(coarse.bad + fine.bad, 0, 0, "%s: steps at fault or not finite", p->name);
+    bound(fine.load, 1 + 1e-9, "%s: |tau| <= K_t |J^-1| |eps|", p->name);
+    near(fine.jump / coarse.jump, 0.1, 0.05, "%s: a tenth of the step, a tenth of the jump", p->name);
   }
 }
-
-const ethd__stress ethd__stress_arm = {"arm", "the arm at its singular poses and near them", run};

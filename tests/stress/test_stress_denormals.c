@@ -6,11 +6,9 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "cli/cli.h"
 #include "clock.h"
 #include "denormals.h"
-#include "stress/rig.h"
-#include "stress/stress.h"
+#include "stress/mass.h"
 
 #define TICKS 500
 #define CUTOFF 10.0 /* Hz */
@@ -33,15 +31,13 @@ static void turn(standing *o) {
 /* The ring stands still for `still` ticks after a turn. */
 static void rest(standing *o, int64_t still) {
   ethd_setup setup = ethd_setup_default();
-  ethd_error error = {0};
-  *o = (standing){.scene = ethd__stress_rig_wall(-0.238), .tick = INFINITY};
+  *o = (standing){.scene = rig_scene(RIG_WALL), .tick = INFINITY};
   setup.scene = o->scene;
-  ethd__stress_set(&setup, "velocity.cutoff", CUTOFF);
+  rig_set(&setup, "velocity.cutoff", CUTOFF);
   o->sense.have = ETHD_HAVE_FINGER;
   o->sense.finger[0] = 0.249, o->sense.finger[1] = 0.25;
-  if (ethd_control_create(&setup, &o->control, &error) < 0 ||
-      ethd_arm_angles(&setup.arm, (ethd_vec){0.2495, 0.25}, -1, o->sense.q) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
+  o->control = rig_control(&setup);
+  ck_assert_int_eq(ethd_arm_angles(&setup.arm, (ethd_vec){0.2495, 0.25}, -1, o->sense.q), ETHD_OK);
   turn(o);
   for (int64_t k = 0; k < still; k++) (void)ethd_control_step(o->control, &o->sense, &o->command, NULL);
 }
@@ -68,8 +64,8 @@ static bool subnormal(double x) {
   return bits != 0 && bits < (uint64_t)1 << 52;
 }
 
-static void run(ethd__stress_log *log) {
-  int rounds = (int)ethd__stress_pick(log, 40, 200, 400);
+TEST(test_denormals) {
+  int rounds = (int)pick(40, 400);
   standing calm, flushed, kept;
   uint64_t before = ethd__denormals_flush();
   rest(&calm, 0);
@@ -90,16 +86,12 @@ static void run(ethd__stress_log *log) {
     off = fmax(off, apart(flushed.trace.fe[i], kept.trace.fe[i]));
     off = fmax(off, apart(flushed.trace.x[i], kept.trace.x[i]));
   }
-  ethd__stress_within(log, "1", subnormal(kept.trace.qd[0]), 0, 0, "kept by the caller: nothing subnormal is left");
-  ethd__stress_bound(log, "rad/s", fabs(flushed.trace.qd[0]), DBL_MIN / (1 - exp(-2 * M_PI * CUTOFF * 0.001)),
-                     "flushed: the speed that is left <= least normal number / a");
-  ethd__stress_within(log, "Nm", off, 0, 0, "torques, forces, speeds flushed and kept differ by");
-  ethd__stress_bound(log, "1", flushed.tick / calm.tick, 1.5, "flushed: tick at rest over a tick in motion");
-  ethd__stress_note(log, "tick in motion %.0f ns; at rest flushed %.0f ns, with subnormals kept %.0f ns",
-                    1e9 * calm.tick, 1e9 * flushed.tick, 1e9 * kept.tick);
+  within(subnormal(kept.trace.qd[0]), 0, 0, "kept by the caller: nothing subnormal is left");
+  bound(fabs(flushed.trace.qd[0]), DBL_MIN / (1 - exp(-2 * M_PI * CUTOFF * 0.001)),
+        "flushed: the speed that is left <= least normal number / a");
+  within(off, 0, 0, "torques, forces, speeds flushed and kept differ by");
+  bound(flushed.tick / calm.tick, 1.5, "flushed: tick at rest over a tick in motion");
   end(&calm);
   end(&flushed);
   end(&kept);
 }
-
-const ethd__stress ethd__stress_denormals = {"denormals", "subnormal numbers: same results, same pace", run};

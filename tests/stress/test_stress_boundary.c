@@ -7,8 +7,7 @@
 
 #include "bounds/stability.h"
 #include "stress/curve.h"
-#include "stress/rig.h"
-#include "stress/stress.h"
+#include "stress/mass.h"
 
 #define MASS 0.3
 #define PERIOD 0.001
@@ -31,32 +30,32 @@ typedef struct boundary_loop {
 
 /* The loop in its wall, deep enough for swings of `most` m, with both gains `scale` times as large: where the device is
    rigid, as a mass 1 / scale as large. */
-static void open_rig(const boundary_loop *e, double scale, double most, ethd__stress_rig *rig) {
+static void open_rig(const boundary_loop *e, double scale, double most, mass_rig *r) {
   const ethd__sampled_loop *l = &e->loop;
   double k = scale * l->stiffness, b = scale * l->damping;
   double push = 4 * most * (k + b * e->th / PERIOD);
-  ethd__stress_rig_open(rig, l->mass, -push / k);
-  ethd__stress_rig_velocity(rig, l->method, l->p[0]);
-  ethd_setup_transition(&rig->setup, &ethd_transition_smooth);
-  ethd__stress_set(&rig->setup, "contact.k_e", k);
-  ethd__stress_set(&rig->setup, "contact.b_e", b);
-  ethd__stress_set(&rig->setup, "transition.v_hysteresis", 1);
-  rig->delay = l->delay;
-  rig->motor_mass = l->motor_mass;
-  rig->spring = l->spring;
-  rig->damper = l->damper;
-  rig->push.x = -push;
+  mass_open(r, l->mass, -push / k);
+  mass_velocity(r, l->method, l->p[0]);
+  ethd_setup_transition(&r->on.setup, &ethd_transition_smooth);
+  rig_set(&r->on.setup, "contact.k_e", k);
+  rig_set(&r->on.setup, "contact.b_e", b);
+  rig_set(&r->on.setup, "transition.v_hysteresis", 1);
+  r->delay = l->delay;
+  r->motor_mass = l->motor_mass;
+  r->spring = l->spring;
+  r->damper = l->damper;
+  r->push.x = -push;
 }
 
 /* Growth per tick. */
 static double growth(const boundary_loop *e, double scale) {
-  ethd__stress_rig rig;
-  open_rig(e, scale, 10 * SWING, &rig);
-  ethd__stress_rig_start(&rig, SWING * e->th / PERIOD);
-  ethd__swing swing = {
+  mass_rig r;
+  open_rig(e, scale, 10 * SWING, &r);
+  mass_start(&r, SWING * e->th / PERIOD);
+  swing_span swing = {
       .order = 1, .settle = 200, .span = 1800, .floor = 1e-3 * SWING * e->th, .ceiling = 10 * SWING * e->th};
-  double rate = ethd__stress_rig_growth(&rig, &swing);
-  ethd__stress_rig_close(&rig);
+  double rate = mass_growth(&r, &swing);
+  mass_close(&r);
   return rate;
 }
 
@@ -86,23 +85,18 @@ static boundary_loop on_curve(const ethd__curve *curve, double th) {
   return e;
 }
 
-static void one_curve(ethd__stress_log *log, FILE *data, const ethd__curve *curve, const char *name) {
-  int points = (int)ethd__stress_pick(log, 8, 40, 40);
+static void one_curve(const ethd__curve *curve, const char *name) {
+  int points = (int)pick(8, 40);
   double end = ethd__curve_end(curve), inside[40], outside[40];
   for (int i = 0; i < points; i++) {
     boundary_loop e = on_curve(curve, end * (0.1 + 0.89 * i / (points - 1)));
-    double k = e.loop.stiffness, b = e.loop.damping, scale = found(&e);
+    double k = e.loop.stiffness;
     inside[i] = growth(&e, 0.98);
     outside[i] = growth(&e, 1.02);
-    ethd__stress_near(log, "N/m", scale * k, k, 5e-3, "%s, n = %d: K_e (and B_e) found", name, curve->delay);
-    if (data)
-      fprintf(data, "%s,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", name, curve->delay, curve->mass, curve->period,
-              e.th, k, b, scale * k, scale * b);
+    near(found(&e) * k, k, 5e-3, "%s, n = %d: K_e (and B_e) found", name, curve->delay);
   }
-  for (int i = 0; i < points; i++)
-    ethd__stress_bound(log, "1", inside[i], 0, "%s, n = %d: 2 %% inside, growth a tick", name, curve->delay);
-  for (int i = 0; i < points; i++)
-    ethd__stress_bound(log, "1", -outside[i], 0, "%s, n = %d: 2 %% outside, decay a tick", name, curve->delay);
+  for (int i = 0; i < points; i++) bound(inside[i], 0, "%s, n = %d: 2 %% inside, growth a tick", name, curve->delay);
+  for (int i = 0; i < points; i++) bound(-outside[i], 0, "%s, n = %d: 2 %% outside, decay a tick", name, curve->delay);
 }
 
 /* ---- a transmission that gives way: along rays of gains whose ratio stays ---- */
@@ -151,12 +145,12 @@ static void find_end(ethd__sampled_loop *l) {
 }
 
 /* Dampings from half as large again as the hold takes off to many times that. */
-static void soft_rays(ethd__stress_log *log, const char *name, ethd_velocity_method method, double value, int delay) {
+static void soft_rays(const char *name, ethd_velocity_method method, double value, int delay) {
   for (int i = 0; i < RAYS; i++) {
     boundary_loop e = soft(method, value, delay, 1000, 1000 * PERIOD * (delay + 0.5) * 1.5 * pow(1.4, i));
     find_end(&e.loop);
-    ethd__stress_near(log, "N/m", found(&e) * e.loop.stiffness, e.loop.stiffness, 5e-3,
-                      "transmission gives way, %s, n = %d: K_e (and B_e) found", name, delay);
+    near(found(&e) * e.loop.stiffness, e.loop.stiffness, 5e-3,
+         "transmission gives way, %s, n = %d: K_e (and B_e) found", name, delay);
   }
 }
 
@@ -166,49 +160,40 @@ static void soft_rays(ethd__stress_log *log, const char *name, ethd_velocity_met
 
 /* The swing's speed at the end, m/s, after a push of the motor's side to `speed`. */
 static double swing_after(const boundary_loop *e, double speed) {
-  ethd__stress_rig rig;
+  mass_rig r;
   double most = 0;
-  open_rig(e, 1, speed * PERIOD / e->th, &rig);
-  rig.friction = SOFT_FRICTION;
-  ethd__stress_rig_start(&rig, 0);
-  rig.state.v[ETHD__MOTOR] = speed / rig.setup.arm.link1;
+  open_rig(e, 1, speed * PERIOD / e->th, &r);
+  r.friction = SOFT_FRICTION;
+  mass_start(&r, 0);
+  r.state.v[ETHD__MOTOR] = speed / r.on.setup.arm.link1;
   for (int k = 0; k < LAST; k++) {
-    ethd__stress_rig_tick(&rig);
-    if (k >= LAST - 50) most = fmax(most, fabs(ethd__stress_rig_speed(&rig)));
+    mass_tick(&r);
+    if (k >= LAST - 50) most = fmax(most, fabs(mass_speed(&r)));
   }
-  ethd__stress_rig_close(&rig);
+  mass_close(&r);
   return most;
 }
 
 /* Without delay it is the speed of the push; with a tick of it, friction takes some before the loop answers. */
-static void held(ethd__stress_log *log, double stiffness, double damping, int delay) {
+static void held(double stiffness, double damping, int delay) {
   const boundary_loop e = soft(ETHD_VELOCITY_LOWPASS, 389.1, delay, stiffness, damping);
   double predicted = ethd__sampled_held(ethd__sampled_viscous_needed(&e.loop), SOFT_FRICTION, 0);
   double speed = 0.2 * predicted;
   while (swing_after(&e, speed) < speed) speed *= 1.05;
-  ethd__stress_bound(log, "m/s", predicted, speed, "transmission gives way, n = %d: friction stops swings up to",
-                     delay);
-  ethd__stress_bound(log, "m/s", speed, (delay ? 2.5 : 1.2) * predicted,
-                     "transmission gives way, n = %d: and none much faster", delay);
+  bound(predicted, speed, "transmission gives way, n = %d: friction stops swings up to", delay);
+  bound(speed, (delay ? 2.5 : 1.2) * predicted, "transmission gives way, n = %d: and none much faster", delay);
 }
 
-static void run(ethd__stress_log *log) {
-  FILE *data = ethd__stress_data(log, "boundary.csv",
-                                 "velocity,delay_ticks,mass_kg,period_s,th_rad,k_analytic_npm,"
-                                 "b_analytic_nspm,k_found_npm,b_found_nspm");
+TEST(test_boundary) {
   for (size_t i = 0; i < sizeof estimators / sizeof *estimators; i++)
     for (int n = 0; n <= 2; n++) {
       ethd__curve curve = {MASS, PERIOD, n, estimators[i].method, estimators[i].value};
-      one_curve(log, data, &curve, estimators[i].name);
+      one_curve(&curve, estimators[i].name);
     }
-  ethd__stress_close(data);
   for (int n = 0; n <= 1; n++) {
-    soft_rays(log, "difference", ETHD_VELOCITY_DIFFERENCE, 0, n);
-    soft_rays(log, "lowpass 400 Hz", ETHD_VELOCITY_LOWPASS, 400, n);
+    soft_rays("difference", ETHD_VELOCITY_DIFFERENCE, 0, n);
+    soft_rays("lowpass 400 Hz", ETHD_VELOCITY_LOWPASS, 400, n);
     for (double damping = 40; damping < 70; damping += 5)
-      for (double stiffness = 500; stiffness < 4000; stiffness += 1000) held(log, stiffness, damping, n);
+      for (double stiffness = 500; stiffness < 4000; stiffness += 1000) held(stiffness, damping, n);
   }
 }
-
-const ethd__stress ethd__stress_boundary = {
-    "boundary", "the sampled wall's boundary of stability, n = 0, 1, 2 ticks of delay", run};

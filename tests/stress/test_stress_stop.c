@@ -5,8 +5,7 @@
      then:     v_k+1 + g = (1 - b)(v_k + g) */
 #include <math.h>
 
-#include "stress/rig.h"
-#include "stress/stress.h"
+#include "stress/mass.h"
 
 typedef struct stop {
   const char *plant;
@@ -26,27 +25,26 @@ typedef struct stopped {
 /* The ring has coasted for a while and meets the wall `late` s before the tick that sees it. */
 static stopped measure(const stop *s, double speed, double late, int delay, int measured) {
   const double coast = 5 * s->period;
-  ethd__stress_rig rig;
-  ethd__stress_rig_open(&rig, s->mass, speed * (coast - late));
-  ethd_setup_velocity(&rig.setup, ETHD_VELOCITY_DIFFERENCE);
-  rig.setup.arm.link1 = ETHD__STRESS_RIG_STRAIGHT;
-  ethd__stress_rig_brakes(&rig, s->damping, s->v_th);
-  rig.measured = measured;
-  rig.force_limit = s->force;
-  rig.delay = delay;
-  ethd__stress_rig_start(&rig, speed);
-  while (ethd__stress_rig_step(&rig)->state != ETHD_BRAKING) ethd__stress_rig_move(&rig);
-  int64_t begin = rig.tick;
+  mass_rig r;
+  mass_open(&r, s->mass, speed * (coast - late));
+  ethd_setup_velocity(&r.on.setup, ETHD_VELOCITY_DIFFERENCE);
+  r.on.setup.arm.link1 = MASS_STRAIGHT;
+  mass_brakes(&r, s->damping, s->v_th);
+  r.measured = measured;
+  r.force_limit = s->force;
+  r.delay = delay;
+  mass_start(&r, speed);
+  while (mass_step(&r)->state != ETHD_BRAKING) mass_move(&r);
+  int64_t begin = r.tick;
   double depth = 0, left = speed;
-  while (rig.trace.state == ETHD_BRAKING) {
-    if (rig.tick - begin >= delay) rig.push.x = s->friction; /* with the motors, out of the wall */
-    ethd__stress_rig_move(&rig);
-    if (ethd__stress_rig_speed(&rig) > 0)
-      depth = ethd__stress_rig_depth(&rig) - rig.gap, left = ethd__stress_rig_speed(&rig);
-    ethd__stress_rig_step(&rig);
+  while (r.on.trace.state == ETHD_BRAKING) {
+    if (r.tick - begin >= delay) r.push.x = s->friction; /* with the motors, out of the wall */
+    mass_move(&r);
+    if (mass_speed(&r) > 0) depth = mass_depth(&r) - r.gap, left = mass_speed(&r);
+    mass_step(&r);
   }
-  stopped o = {(double)(rig.tick - begin) * s->period, rig.trace.eps, depth, left};
-  ethd__stress_rig_close(&rig);
+  stopped o = {(double)(r.tick - begin) * s->period, r.on.trace.eps, depth, left};
+  mass_close(&r);
   return o;
 }
 
@@ -72,44 +70,38 @@ static stopped smooth(const stop *s, double speed, int delay) {
 }
 
 /* No ring stops quicker than F_sat and f_c let it. */
-static void check_least(ethd__stress_log *log, const stop *s, double speed, double late, int delay, const stopped *o) {
+static void check_least(const stop *s, double speed, double late, int delay, const stopped *o) {
   double a = (s->force + s->friction) / s->mass;
   double least = (speed * speed - o->left * o->left) / (2 * a) + speed * (late + delay * s->period);
-  if (o->depth > 0)
-    ethd__stress_bound(log, "m", least, o->depth + 1e-9, "%s, n = %d: v^2/(2a) + v (T/2 + t_d) <= depth", s->plant,
-                       delay);
+  if (o->depth > 0) bound(least, o->depth + 1e-9, "%s, n = %d: v^2/(2a) + v (T/2 + t_d) <= depth", s->plant, delay);
 }
 
 /* Means over speeds about `speed` and instants of contact within a tick: what ticks make of a stop. */
-static void compare(ethd__stress_log *log, const stop *s, double speed, int delay) {
+static void compare(const stop *s, double speed, int delay) {
   stopped m = {0}, f = {0};
   for (int i = 0; i < 20; i++)
     for (int k = 0; k < 10; k++) {
       double v = speed * (0.95 + 0.1 * (i + 0.5) / 20), late = s->period * (k + 0.5) / 10;
       stopped one = measure(s, v, late, delay, 0), form = smooth(s, v, delay);
-      check_least(log, s, v, late, delay, &one);
+      check_least(s, v, late, delay, &one);
       m.time += one.time / 200, m.eps += one.eps / 200;
       f.time += form.time / 200, f.eps += form.eps / 200;
     }
-  ethd__stress_within(log, "s", m.time, f.time, s->period, "%s, n = %d, %g m/s: Delta_s without ticks", s->plant, delay,
-                      speed);
-  ethd__stress_within(log, "m", m.eps, f.eps, speed * s->period / 4, "%s, n = %d, %g m/s: eps without ticks", s->plant,
-                      delay, speed);
+  within(m.time, f.time, s->period, "%s, n = %d, %g m/s: Delta_s without ticks", s->plant, delay, speed);
+  within(m.eps, f.eps, speed * s->period / 4, "%s, n = %d, %g m/s: eps without ticks", s->plant, delay, speed);
 }
 
-static void run(ethd__stress_log *log) {
+TEST(test_stop) {
   static const double speeds[] = {0.05, 0.1, 0.2, 0.4, 0.6, 0.8};
   for (size_t p = 0; p < 2; p++)
     for (size_t i = 0; i < 6; i++) {
       stopped m = measure(&stops[p], speeds[i], 3e-4, 0, 1), f = sampled(&stops[p], speeds[i], 3e-4);
-      ethd__stress_within(log, "s", m.time, f.time, 1e-9, "time of braking, tick for tick");
-      ethd__stress_near(log, "m", m.eps, f.eps, 1e-4, "eps, tick for tick");
+      within(m.time, f.time, 1e-9, "time of braking, tick for tick");
+      near(m.eps, f.eps, 1e-4, "eps, tick for tick");
     }
   for (size_t p = 0; p < 2; p++)
     for (int n = 0; n <= 1; n++) {
       if (stops[p].damping > 0.828 * stops[p].mass / stops[p].period && n) continue; /* unstable there */
-      for (size_t i = 2; i < 4; i++) compare(log, &stops[p], speeds[i], n);
+      for (size_t i = 2; i < 4; i++) compare(&stops[p], speeds[i], n);
     }
 }
-
-const ethd__stress ethd__stress_stop = {"stop", "braking with saturated motors: time and distance", run};

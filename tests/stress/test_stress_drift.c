@@ -8,10 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/cli.h"
 #include "ethd/control.h"
-#include "stress/rig.h"
-#include "stress/stress.h"
+#include "stress/mass.h"
 
 #define PERIOD 0.001
 
@@ -27,19 +25,15 @@ static ethd_status watch(const double *p, void *state, const ethd_contact *conta
 
 static ethd_control *make(const ethd_transition_law *law, double t_max, const ethd_scene *scene) {
   ethd_setup setup = ethd_setup_default();
-  ethd_control *control;
-  ethd_error error;
   ethd_setup_transition(&setup, law);
   setup.scene = scene;
-  ethd__stress_set(&setup, "transition.eps_max", (double)INFINITY);
-  ethd__stress_set(&setup, "transition.t_max", t_max);
-  if (ethd_control_create(&setup, &control, &error) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
-  return control;
+  rig_set(&setup, "transition.eps_max", (double)INFINITY);
+  rig_set(&setup, "transition.t_max", t_max);
+  return rig_control(&setup);
 }
 
 /* The ring stands 1 mm deep and says that it moves: braking goes on until t_max. */
-static void press(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks) {
+static void press(const ethd_scene *scene, int64_t ticks) {
   ethd_transition_law law = ethd_transition_offset;
   law.law.id = "watched";
   law.step = watch;
@@ -52,27 +46,24 @@ static void press(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks)
   int64_t ended = -1, changed = 0;
   memset(&s, 0, sizeof s);
   s.have = ETHD_HAVE_DQ | ETHD_HAVE_FINGER;
-  if (ethd_arm_angles(&setup.arm, (ethd_vec){0.249, 0.25}, -1, s.q) < 0) return;
+  ck_assert_int_eq(ethd_arm_angles(&setup.arm, (ethd_vec){0.249, 0.25}, -1, s.q), ETHD_OK);
   s.dq[0] = 0.1 / 0.25;
   s.finger[0] = 0.245, s.finger[1] = 0.25;
-  for (int64_t k = 0; k < ticks && !ethd__stop; k++) {
+  for (int64_t k = 0; k < ticks; k++) {
     s.time_ns = k * 1000000;
     (void)ethd_control_step(control, &s, &c, &t);
     if (ended < 0 && t.state == ETHD_VO) ended = k;
     if (k == 0 || k == ended) first = c;
     changed += memcmp(c.torque, first.torque, sizeof c.torque) != 0;
-    if ((k & 0xfffff) == 0) ethd__progress((uint64_t)k, (uint64_t)ticks, "a static press");
   }
-  ethd__progress(1, 1, "");
-  ethd__stress_within(log, "s", age_seen, (double)(ticks - 1) * PERIOD, 1e-15 * age_seen,
-                      "age of a contact after %g ticks", (double)ticks);
-  ethd__stress_within(log, "ticks", (double)ended, (double)braking, 0, "tick at which t_max ended the braking");
-  ethd__stress_within(log, "ticks", (double)changed, 0, 0, "ticks on which the torque of a press changed");
+  within(age_seen, (double)(ticks - 1) * PERIOD, 1e-15 * age_seen, "age of a contact after %g ticks", (double)ticks);
+  within((double)ended, (double)braking, 0, "tick at which t_max ended the braking");
+  within((double)changed, 0, 0, "ticks on which the torque of a press changed");
   ethd_control_destroy(control);
 }
 
 /* Lost ticks count in ages, too. */
-static void lost(ethd__stress_log *log, const ethd_scene *scene) {
+static void lost(const ethd_scene *scene) {
   ethd_transition_law law = ethd_transition_offset;
   law.step = watch;
   ethd_control *control = make(&law, (double)INFINITY, scene);
@@ -82,15 +73,14 @@ static void lost(ethd__stress_log *log, const ethd_scene *scene) {
   int64_t periods = 0, before = 0;
   memset(&s, 0, sizeof s);
   s.have = ETHD_HAVE_DQ;
-  if (ethd_arm_angles(&setup.arm, (ethd_vec){0.249, 0.25}, -1, s.q) < 0) return;
+  ck_assert_int_eq(ethd_arm_angles(&setup.arm, (ethd_vec){0.249, 0.25}, -1, s.q), ETHD_OK);
   for (int k = 0; k < 1000; k++) {
     s.missed = k * k % 7;
     before = periods;
     periods += s.missed + 1;
     (void)ethd_control_step(control, &s, &c, NULL);
   }
-  ethd__stress_near(log, "s", age_seen, (double)before * PERIOD, 1e-15,
-                    "age of a contact, 0 to 6 ticks lost each time");
+  near(age_seen, (double)before * PERIOD, 1e-15, "age of a contact, 0 to 6 ticks lost each time");
   ethd_control_destroy(control);
 }
 
@@ -104,7 +94,7 @@ static void script(const ethd_arm *arm, ethd_sense senses[CYCLE]) {
     double phase = 2 * M_PI * 3 * k / CYCLE;
     ethd_vec ring = {0.27 - 0.025 * (1 - cos(phase)) / 2, 0.25 + 0.01 * sin(phase)};
     memset(s, 0, sizeof *s);
-    if (ethd_arm_angles(arm, ring, -1, s->q) < 0) ethd__fail(ETHD_EXIT_FAILED, "out of reach");
+    ck_assert_int_eq(ethd_arm_angles(arm, ring, -1, s->q), ETHD_OK);
     if (k % 3) continue;
     s->have = ETHD_HAVE_CENTRE;
     s->centre[0] = -0.002 * sin(phase);
@@ -119,7 +109,7 @@ static double apart(const double *a, const double *b) {
   return most;
 }
 
-static void taps(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks) {
+static void taps(const ethd_scene *scene, int64_t ticks) {
   static ethd_sense senses[CYCLE];
   static double early[2 * CYCLE], late[2 * CYCLE];
   ethd_setup setup = ethd_setup_default();
@@ -127,7 +117,7 @@ static void taps(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks) 
   ethd_command c;
   int64_t cycles = ticks / CYCLE, braking = 0, vo = 0;
   script(&setup.arm, senses);
-  for (int64_t i = 0; i < cycles && !ethd__stop; i++) {
+  for (int64_t i = 0; i < cycles; i++) {
     for (int k = 0; k < CYCLE; k++) {
       ethd_sense s = senses[k];
       ethd_trace t;
@@ -137,23 +127,18 @@ static void taps(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks) 
       memcpy((i < 10 ? early : late) + 2 * k, c.torque, sizeof c.torque);
       if (i == cycles - 1) braking += t.state == ETHD_BRAKING, vo += t.state == ETHD_VO;
     }
-    if ((i & 255) == 0) ethd__progress((uint64_t)i, (uint64_t)cycles, "taps");
   }
-  ethd__progress(1, 1, "");
-  ethd__stress_within(log, "Nm", apart(early, late), 0, 1e-12,
-                      "torques of taps 10 and of the last ones, %g ticks later", (double)((cycles - 10) * CYCLE));
-  ethd__stress_bound(log, "ticks", -(double)(braking < vo ? braking : vo), -10,
-                     "the last ones brake and press (ticks, negated)");
+  within(apart(early, late), 0, 1e-12, "torques of taps 10 and of the last ones, %g ticks later",
+         (double)((cycles - 10) * CYCLE));
+  bound(-(double)(braking < vo ? braking : vo), -10, "the last ones brake and press (ticks, negated)");
   ethd_control_destroy(control);
 }
 
-static void run(ethd__stress_log *log) {
-  ethd_scene *scene = ethd__stress_rig_wall(-0.238);
-  int64_t ticks = ethd__stress_pick(log, 1000000, 10000000, 1000000000);
-  press(log, scene, ticks);
-  lost(log, scene);
-  taps(log, scene, ticks);
+TEST(test_drift) {
+  ethd_scene *scene = rig_scene(RIG_WALL);
+  int64_t ticks = pick(1000000, 1000000000);
+  press(scene, ticks);
+  lost(scene);
+  taps(scene, ticks);
   ethd_scene_destroy(scene);
 }
-
-const ethd__stress ethd__stress_drift = {"drift", "1e6 (quick), 1e7 or 1e9 (long) ticks without drift", run};

@@ -5,21 +5,21 @@
         |   |//////  wall           alone, with the inertia m L^2
         v   |//////
      ( ring )|/////   wall on the left: n = (-1, 0), d_re = gap at the start                           */
-#ifndef ETHD_TESTS_STRESS_RIG_H
-#define ETHD_TESTS_STRESS_RIG_H
+#ifndef ETHD_TESTS_STRESS_MASS_H
+#define ETHD_TESTS_STRESS_MASS_H
 
 #include <stdbool.h>
 
-#include "ethd/control.h"
 #include "sim/body.h"
+#include "unit/rig.h"
 
-#define ETHD__STRESS_RIG_DELAY_MAX 16
-#define ETHD__STRESS_RIG_STRAIGHT ETHD_ARM_LINK_MAX /* m: links on which a joint's turn is a straight line */
+#define MASS_DELAY_MAX 16
+#define MASS_STRAIGHT ETHD_ARM_LINK_MAX /* m: links on which a joint's turn is a straight line */
 
-typedef struct ethd__stress_rig {
-  ethd_setup setup; /* changed before start */
-  double mass;      /* kg at the ring, both joints alike */
-  double gap;       /* m to the wall at the start */
+typedef struct mass_rig {
+  rig on;      /* its setup is changed before the start */
+  double mass; /* kg at the ring, both joints alike */
+  double gap;  /* m to the wall at the start */
   /* A transmission that gives way: kg of the mass on the motor's side, N/m, Ns/m; 0: rigid. With one the simulator's
      arm moves, and push and friction act on the motor's side. */
   double motor_mass, spring, damper;
@@ -33,62 +33,66 @@ typedef struct ethd__stress_rig {
 
   ethd__body body;
   ethd__sim_state state; /* of both, where the transmission gives way */
-  ethd_scene *scene;
-  ethd_control *control;
-  double q[2], w[2]; /* rad, rad/s: true at the present tick */
-  double way[ETHD__STRESS_RIG_DELAY_MAX][2];
+  double q[2], w[2];     /* rad, rad/s: true at the present tick */
+  double way[MASS_DELAY_MAX][2];
   int64_t tick;
   int64_t missed; /* periods that went by since the last step without one */
-  ethd_status status;
-  ethd_command command;
-  ethd_trace trace; /* of the last tick */
-} ethd__stress_rig;
+} mass_rig;
 
 /* Opens a rig with the default setup without tracking and friction, `gap` m from the wall (d_re; < 0: inside). */
-void ethd__stress_rig_open(ethd__stress_rig *rig, double mass, double gap);
-
-/* Sets a number of a setup by its name; exits where that is refused. */
-void ethd__stress_set(ethd_setup *setup, const char *name, double value);
+void mass_open(mass_rig *r, double mass, double gap);
 
 /* Chooses the velocity estimator; `value` is its first parameter where it has one: a cutoff or a window. */
-void ethd__stress_rig_velocity(ethd__stress_rig *rig, ethd_velocity_method method, double value);
+void mass_velocity(mass_rig *r, ethd_velocity_method method, double value);
 
 /* Brakes with `damping` Ns/m until the ring is slower than v_th m/s, however long and deep that gets. */
-void ethd__stress_rig_brakes(ethd__stress_rig *rig, double damping, double v_th);
+void mass_brakes(mass_rig *r, double damping, double v_th);
 
-/* Creates the controller and starts the ring with `speed` m/s into the wall. Exits when the setup is refused. */
-void ethd__stress_rig_start(ethd__stress_rig *rig, double speed);
-void ethd__stress_rig_close(ethd__stress_rig *rig);
+/* Creates the controller and starts the ring with `speed` m/s into the wall. Fails when the setup is refused. */
+void mass_start(mass_rig *r, double speed);
+void mass_close(mass_rig *r);
 
-/* Lets this push act from now on; the delayed torques already balance it (start does so for rig->push). */
-void ethd__stress_rig_push(ethd__stress_rig *rig, ethd_vec push);
+/* Lets this push act from now on; the delayed torques already balance it (start does so for r->push). */
+void mass_push(mass_rig *r, ethd_vec push);
 
 /* Runs one tick: a step, then the mass moves for a period. */
-const ethd_trace *ethd__stress_rig_tick(ethd__stress_rig *rig);
+const ethd_trace *mass_tick(mass_rig *r);
 
 /* Run the two halves of a tick. A move without a step before it is a lost tick, in which the torque stays. */
-const ethd_trace *ethd__stress_rig_step(ethd__stress_rig *rig);
-void ethd__stress_rig_move(ethd__stress_rig *rig);
+const ethd_trace *mass_step(mass_rig *r);
+void mass_move(mass_rig *r);
 
 /* Returns a tick's sense by the rig's present state. */
-ethd_sense ethd__stress_rig_sense(const ethd__stress_rig *rig);
+ethd_sense mass_sense(const mass_rig *r);
 
 /* Return how far and how fast the ring is along n, m and m/s: joint 1's angle times L. */
-double ethd__stress_rig_depth(const ethd__stress_rig *rig);
-double ethd__stress_rig_speed(const ethd__stress_rig *rig);
+double mass_depth(const mass_rig *r);
+double mass_speed(const mass_rig *r);
 
 /* Measures how a swing grows, ln per tick. For a pair of modes z, z* of x_k, the `order`-th differences of the motion,
    x_k^2 - x_k+1 x_k-1 is proportional to |z|^2k exactly, whatever the phase is (for one real mode it is 0, and the
    motion itself is measured). It is measured from tick `settle` on over `span` ticks: INFINITY as soon as a difference
    is over `ceiling` m, the mean so far once differences are below `floor` m. */
-typedef struct ethd__swing {
+typedef struct swing_span {
   int order, settle, span;
   double floor, ceiling;
-} ethd__swing;
+} swing_span;
 
-double ethd__stress_rig_growth(ethd__stress_rig *rig, const ethd__swing *swing);
+double mass_growth(mass_rig *r, const swing_span *swing);
 
-/* Returns a scene of one half-plane; exits without memory. */
-ethd_scene *ethd__stress_rig_wall(double c);
+/* ---- figures beside their closed forms ---- */
+
+/* Asserts that |measured - analytic| <= share |analytic|. Words are printf's. */
+void near(double measured, double analytic, double share, const char *what, ...) __attribute__((format(printf, 4, 5)));
+
+/* Asserts that |measured - analytic| <= distance. */
+void within(double measured, double analytic, double distance, const char *what, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* Asserts that measured <= most. */
+void bound(double measured, double most, const char *what, ...) __attribute__((format(printf, 3, 4)));
+
+/* Returns `some`, or `many` where ETHD_STRESS is set. */
+int64_t pick(int64_t some, int64_t many);
 
 #endif

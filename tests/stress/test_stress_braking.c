@@ -5,8 +5,7 @@
 #include <math.h>
 
 #include "stress/curve.h"
-#include "stress/rig.h"
-#include "stress/stress.h"
+#include "stress/mass.h"
 
 #define MASS 0.1173
 #define PERIOD 0.001
@@ -14,24 +13,24 @@
 #define SWING 1e-6 /* m a tick: at most half of the creep */
 
 /* Coasts into the wall, long enough for the estimator; the tick at which braking begins is done. */
-static void enter(ethd__stress_rig *rig, double damping) {
-  ethd__stress_rig_start(rig, CREEP);
-  while (ethd__stress_rig_step(rig)->state != ETHD_BRAKING) ethd__stress_rig_move(rig);
-  ethd__stress_rig_push(rig, (ethd_vec){-CREEP * damping, 0});
-  ethd__stress_rig_move(rig);
-  rig->w[0] += SWING / 10 / PERIOD / rig->setup.arm.link1;
+static void enter(mass_rig *r, double damping) {
+  mass_start(r, CREEP);
+  while (mass_step(r)->state != ETHD_BRAKING) mass_move(r);
+  mass_push(r, (ethd_vec){-CREEP * damping, 0});
+  mass_move(r);
+  r->w[0] += SWING / 10 / PERIOD / r->on.setup.arm.link1;
 }
 
 static double growth(const ethd__curve *c, double damping) {
-  ethd__stress_rig rig;
-  ethd__stress_rig_open(&rig, MASS, 0.2 * CREEP);
-  ethd__stress_rig_velocity(&rig, c->method, c->value);
-  ethd__stress_rig_brakes(&rig, damping, 1e-6);
-  rig.delay = c->delay;
-  enter(&rig, damping);
-  ethd__swing swing = {.order = 2, .settle = 100, .span = 400, .floor = 1e-6 * SWING, .ceiling = SWING};
-  double rate = ethd__stress_rig_growth(&rig, &swing);
-  ethd__stress_rig_close(&rig);
+  mass_rig r;
+  mass_open(&r, MASS, 0.2 * CREEP);
+  mass_velocity(&r, c->method, c->value);
+  mass_brakes(&r, damping, 1e-6);
+  r.delay = c->delay;
+  enter(&r, damping);
+  swing_span swing = {.order = 2, .settle = 100, .span = 400, .floor = 1e-6 * SWING, .ceiling = SWING};
+  double rate = mass_growth(&r, &swing);
+  mass_close(&r);
   return rate;
 }
 
@@ -47,7 +46,7 @@ static double found(const ethd__curve *c, double about) {
   return (low + high) / 2;
 }
 
-static void run(ethd__stress_log *log) {
+TEST(test_braking) {
   static const struct {
     const char *name;
     ethd_velocity_method method;
@@ -61,17 +60,13 @@ static void run(ethd__stress_log *log) {
       ethd__curve c = {MASS, PERIOD, n, estimators[i].method, estimators[i].value};
       double k, largest;
       ethd__curve_at(&c, ethd__curve_end(&c), &k, &largest);
-      ethd__stress_near(log, "Ns/m", found(&c, largest), largest, 5e-3, "%s, n = %d: largest B_d", estimators[i].name,
-                        n);
+      near(found(&c, largest), largest, 5e-3, "%s, n = %d: largest B_d", estimators[i].name, n);
       if (c.method == ETHD_VELOCITY_DIFFERENCE)
-        ethd__stress_near(log, "Ns/m", found(&c, largest), 2 * MASS / PERIOD * tan(M_PI / (4 * (n + 1))), 5e-3,
-                          "the same by (2m/T) tan(pi/(4(n+1))), n = %d", n);
+        near(found(&c, largest), 2 * MASS / PERIOD * tan(M_PI / (4 * (n + 1))), 5e-3,
+             "the same by (2m/T) tan(pi/(4(n+1))), n = %d", n);
       if (c.method == ETHD_VELOCITY_LOWPASS && n == 0)
-        ethd__stress_near(log, "Ns/m", found(&c, largest), 2 * MASS / PERIOD, 5e-3,
-                          "a low-pass doesn't lower it: 2m/T");
-      ethd__stress_bound(log, "1", growth(&c, 0.98 * largest), 0, "2 %% under: growth a tick");
-      ethd__stress_bound(log, "1", -growth(&c, 1.02 * largest), 0, "2 %% over: decay a tick");
+        near(found(&c, largest), 2 * MASS / PERIOD, 5e-3, "a low-pass doesn't lower it: 2m/T");
+      bound(growth(&c, 0.98 * largest), 0, "2 %% under: growth a tick");
+      bound(-growth(&c, 1.02 * largest), 0, "2 %% over: decay a tick");
     }
 }
-
-const ethd__stress ethd__stress_braking = {"braking", "the largest B_d of a free ring", run};
