@@ -167,7 +167,7 @@ static void make_recording(void) {
   ethd_config_free(config);
 }
 
-START_TEST(test_any_allocation) {
+TEST_LOOP(test_any_allocation, 0, sizeof jobs / sizeof *jobs) {
   long n = 0, failed = 0;
   begin();
   make_recording();
@@ -190,15 +190,5 @@ START_TEST(test_any_allocation) {
   ck_assert_msg(!jobs[_i].run(), "%s: %s", jobs[_i].name, message);
   printf("%s: %ld of %ld allocations end it\n", jobs[_i].name, failed, n - 1);
   end();
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("driver memory");
-  TCase *t = tcase_create("driver memory");
-  tcase_add_loop_test(t, test_any_allocation, 0, sizeof jobs / sizeof *jobs);
-  tcase_set_timeout(t, 120);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }
 #endif

@@ -5,7 +5,7 @@
 #include <time.h>
 
 #include "unit/readers.h"
-#include "unit/rig.h"
+#include "unit/suite.h"
 
 static double seconds(void) {
   struct timespec t;
@@ -34,7 +34,13 @@ static double time_of(const text_reader *r, int rows) {
   return least;
 }
 
-START_TEST(test_time_is_linear) {
+static int readers(void) {
+  int count = 0;
+  while (text_readers[count].name) count++;
+  return count;
+}
+
+TEST_LOOP(test_time_is_linear, 0, readers()) {
   const text_reader *r = &text_readers[_i];
   if (!r->grow) return;
   double one = time_of(r, r->rows), eight = time_of(r, 8 * r->rows);
@@ -42,24 +48,10 @@ START_TEST(test_time_is_linear) {
   ck_assert_msg(eight < 32 * one, "%s: %.3g s for %d rows, %.3g s for eight times as many", r->name, one, r->rows,
                 eight);
 }
-END_TEST
 
 /* The seeds from which volume starts are taken. */
-START_TEST(test_seeds) {
+TEST(test_seeds) {
   for (const text_reader *r = text_readers; r->name; r++)
     if (strcmp(r->name, "frames") != 0)
       ck_assert_msg(r->read(r->seed, r->length) == 1, "%s: its seed isn't taken", r->name);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("linear");
-  TCase *t = tcase_create("linear");
-  int count = 0;
-  while (text_readers[count].name) count++;
-  tcase_set_timeout(t, 60);
-  tcase_add_test(t, test_seeds);
-  tcase_add_loop_test(t, test_time_is_linear, 0, count);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

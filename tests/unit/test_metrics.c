@@ -1,10 +1,10 @@
 /* Metrics of taps made by hand: every expected value is read off the construction. */
-#include <check.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "tap/metrics.h"
+#include "unit/suite.h"
 
 enum { COUNT = 300 };
 static ethd_trace trace[COUNT];
@@ -42,7 +42,9 @@ static void touch_at(int tick) {
   for (int i = tick; i < COUNT; i++) truth[i].pad = 1e-4;
 }
 
-START_TEST(test_meeting_and_touch) {
+FIXTURE(setup, NULL)
+
+TEST(test_meeting_and_touch) {
   touch_at(70);
   truth[70].ring_v[0] = 0.03; /* leaving */
   truth[75].ring_v[0] = 0.11;
@@ -56,10 +58,9 @@ START_TEST(test_meeting_and_touch) {
   ck_assert_double_eq(m.v_rmin, -0.11);
   ck_assert(isnan(m.delta_s) && isnan(m.eps));
 }
-END_TEST
 
 /* The pad comes to the ring a quarter of the way from tick 69 to 70. */
-START_TEST(test_touch_between_ticks) {
+TEST(test_touch_between_ticks) {
   touch_at(70);
   truth[69].pad = -1e-4, truth[70].pad = 3e-4;
   truth[69].ring_v[0] = -0.08, truth[70].ring_v[0] = 0.04;
@@ -69,10 +70,9 @@ START_TEST(test_touch_between_ticks) {
   truth[69].pad = NAN; /* nothing is known of the tick before */
   ck_assert_double_eq(measure().v_of, -0.04);
 }
-END_TEST
 
 /* v_rmin is looked for after the touch, up to 0.1 s after it. */
-START_TEST(test_window_of_the_smallest_speed) {
+TEST(test_window_of_the_smallest_speed) {
   touch_at(70);
   truth[70].ring_v[0] = 0.9;
   truth[171].ring_v[0] = 0.8;
@@ -81,10 +81,9 @@ START_TEST(test_window_of_the_smallest_speed) {
   truth[170].ring_v[0] = -0.1;
   ck_assert_double_eq(measure().v_rmin, -0.0);
 }
-END_TEST
 
 /* Up to 1 mm deep, 0.08 mm of ripple, back by 0.4 mm, forth by 0.12 mm, further back; the motor twice as far. */
-START_TEST(test_first_rebound) {
+TEST(test_first_rebound) {
   const double depth[] = {0.2, 0.6, 0.52, 1.0, 0.99, 0.8, 0.6, 0.68, 0.6, 0.72, 0.1, 0.1};
   enum { N = sizeof depth / sizeof *depth };
   for (int i = 50; i < COUNT; i++) {
@@ -97,19 +96,17 @@ START_TEST(test_first_rebound) {
   ck_assert_double_eq_tol(measure().d_max, 0.16e-3, 1e-12);
   ck_assert_double_eq_tol(measure().d_max_ring, 0.4e-3, 1e-12);
 }
-END_TEST
 
-START_TEST(test_no_rebound) {
+TEST(test_no_rebound) {
   ck_assert_double_eq(measure().d_max, 0);
   truth[COUNT - 1].ring[0] += 99e-6;
   ck_assert_double_eq(measure().d_max, 0);
   truth[COUNT - 1].ring[0] += 6e-6; /* turned back, and the tap ends there */
   ck_assert_double_eq_tol(measure().d_max, 0.105e-3, 1e-12);
 }
-END_TEST
 
 /* Nine ticks of braking; the offset is the one of the first vo tick. */
-START_TEST(test_braking) {
+TEST(test_braking) {
   for (int i = 50; i < COUNT; i++) trace[i].state = i < 59 ? ETHD_BRAKING : ETHD_VO;
   for (int i = 59; i < COUNT; i++) trace[i].eps = 1e-3 + i * 1e-6;
   ethd__metrics m = measure();
@@ -119,16 +116,14 @@ START_TEST(test_braking) {
   m = measure();
   ck_assert(isnan(m.delta_s) && isnan(m.eps));
 }
-END_TEST
 
 /* A law without braking has neither, whatever its vo means. */
-START_TEST(test_vo_without_braking) {
+TEST(test_vo_without_braking) {
   for (int i = 50; i < COUNT; i++) trace[i].state = ETHD_VO;
   ck_assert(isnan(measure().delta_s));
 }
-END_TEST
 
-START_TEST(test_reasons) {
+TEST(test_reasons) {
   ck_assert_int_eq(measure().reason, ETHD_TAP_NO_CONTACT);
   touch_at(70);
   ck_assert_int_eq(measure().reason, ETHD_TAP_OK);
@@ -144,10 +139,9 @@ START_TEST(test_reasons) {
   trace[10].fault = ETHD_FAULT_LAW;
   ck_assert_int_eq(measure().reason, ETHD_TAP_FAULT);
 }
-END_TEST
 
 /* Both are looked for only where the rule says so. */
-START_TEST(test_grazing) {
+TEST(test_grazing) {
   for (int i = 70; i < 79; i++) truth[i].pad = 1e-4;
   ck_assert_int_eq(measure().reason, ETHD_TAP_OK);
   rule.graze = 9.5e-3;
@@ -155,10 +149,9 @@ START_TEST(test_grazing) {
   truth[200].pad = 1e-4; /* ten ticks in all */
   ck_assert_int_eq(measure().reason, ETHD_TAP_OK);
 }
-END_TEST
 
 /* The finger behind the wall from 70 on, out of it by 4 mm at 120, back at 140. */
-START_TEST(test_double) {
+TEST(test_double) {
   touch_at(70);
   for (int i = 0; i < COUNT; i++) truth[i].finger[0] = i < 70 || (i >= 120 && i < 140) ? 0.249 : 0.244;
   rule.seen = -0.245;
@@ -172,34 +165,30 @@ START_TEST(test_double) {
   for (int i = 140; i < COUNT; i++) truth[i].finger[0] = 0.249; /* left for good */
   ck_assert_int_eq(measure().reason, ETHD_TAP_OK);
 }
-END_TEST
 
-START_TEST(test_never_seen) {
+TEST(test_never_seen) {
   touch_at(70);
   for (int i = 0; i < COUNT; i++) truth[i].finger[0] = 0.249;
   rule.seen = -0.245;
   ck_assert(isnan(measure().t_seen));
 }
-END_TEST
 
 /* Touching at the very tick is no early contact. */
-START_TEST(test_touch_as_the_wall_is_met) {
+TEST(test_touch_as_the_wall_is_met) {
   touch_at(50);
   ethd__metrics m = measure();
   ck_assert_int_eq(m.reason, ETHD_TAP_OK);
   ck_assert_double_eq(m.t_of, m.t_rvo);
 }
-END_TEST
 
-START_TEST(test_never_met) {
+TEST(test_never_met) {
   for (int i = 0; i < COUNT; i++) trace[i].d_re = NAN;
   ethd__metrics m = measure();
   ck_assert_int_eq(m.reason, ETHD_TAP_NO_CONTACT);
   ck_assert(isnan(m.t_rvo) && isnan(m.v_rvo) && isnan(m.d_max) && isnan(m.t_of) && isnan(m.v_of));
 }
-END_TEST
 
-START_TEST(test_motor_side) {
+TEST(test_motor_side) {
   rule.side = 1;
   rule.speed = 0.4;
   touch_at(55);
@@ -208,19 +197,17 @@ START_TEST(test_motor_side) {
   ck_assert_double_eq(m.v_rvo, 0.4);
   ck_assert_double_eq_tol(m.v_of, 0.4, 1e-15);
 }
-END_TEST
 
-START_TEST(test_peak_force) {
+TEST(test_peak_force) {
   trace[3].fe[0] = 3;
   trace[3].fe[1] = -4;
   trace[90].fe[0] = 4.9;
   ck_assert_double_eq(measure().peak_force, 5);
 }
-END_TEST
 
 /* The ring starts in the wall with the finger resting there, bounces, and is taken away before the tap:
    what happens until ring and hand are both clear is not part of it. */
-START_TEST(test_start_in_the_wall) {
+TEST(test_start_in_the_wall) {
   touch_at(70);
   for (int i = 0; i < 30; i++) {
     trace[i].d_re = i == 9 ? 2e-3 : i == 10 ? -1e-3 : i < 20 ? -4e-3 : 1e-3;
@@ -231,10 +218,9 @@ START_TEST(test_start_in_the_wall) {
   ck_assert_double_eq(m.t_rvo, 50 * 1e-3);
   ck_assert_int_eq(m.reason, ETHD_TAP_OK);
 }
-END_TEST
 
 /* Outside, if only just: that is where the tap begins. */
-START_TEST(test_start_close_to_the_wall) {
+TEST(test_start_close_to_the_wall) {
   for (int i = 0; i < COUNT; i++) {
     trace[i].d_re = i < 5 ? 0.5e-3 : -1e-3;
     truth[i].hand[0] = 0.2505;
@@ -243,7 +229,6 @@ START_TEST(test_start_close_to_the_wall) {
   truth[2].pad = 1e-6;
   ck_assert_int_eq(measure().reason, ETHD_TAP_EARLY_CONTACT);
 }
-END_TEST
 
 /* ---- by the finger ---- */
 
@@ -263,7 +248,7 @@ static ethd__metrics by_finger(int touch, double depth, double v, double eps) {
   return measure();
 }
 
-START_TEST(test_by_finger) {
+TEST(test_by_finger) {
   rule.validity = ETHD_TAP_BY_FINGER;
   rule.speed = 0.4, rule.band = 0.08, rule.seen = -0.245;
   ethd__metrics m = by_finger(60, -0.2e-3, 0.01, 0.0012);
@@ -287,35 +272,4 @@ START_TEST(test_by_finger) {
   ck_assert(m.by_ring == ETHD_TAP_NO_CONTACT && m.by_finger == ETHD_TAP_EARLY_CONTACT);
   rule.validity = ETHD_TAP_BY_FINGER, rule.carried = true; /* a device: the finger's own speed before the touch */
   ck_assert_double_eq_tol(by_finger(60, 0, 0, 0).v_hand, 0.4, 1e-9);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("metrics");
-  TCase *all = tcase_create("all");
-  tcase_add_checked_fixture(all, setup, NULL);
-  tcase_add_test(all, test_meeting_and_touch);
-  tcase_add_test(all, test_touch_between_ticks);
-  tcase_add_test(all, test_window_of_the_smallest_speed);
-  tcase_add_test(all, test_first_rebound);
-  tcase_add_test(all, test_no_rebound);
-  tcase_add_test(all, test_braking);
-  tcase_add_test(all, test_vo_without_braking);
-  tcase_add_test(all, test_reasons);
-  tcase_add_test(all, test_grazing);
-  tcase_add_test(all, test_double);
-  tcase_add_test(all, test_never_seen);
-  tcase_add_test(all, test_touch_as_the_wall_is_met);
-  tcase_add_test(all, test_never_met);
-  tcase_add_test(all, test_motor_side);
-  tcase_add_test(all, test_peak_force);
-  tcase_add_test(all, test_start_in_the_wall);
-  tcase_add_test(all, test_start_close_to_the_wall);
-  tcase_add_test(all, test_by_finger);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

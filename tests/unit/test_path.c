@@ -4,7 +4,7 @@
 
 #include "sim/path.h"
 #include "unit/draw.h"
-#include "unit/rig.h"
+#include "unit/suite.h"
 
 #define PI 3.14159265358979323846
 
@@ -18,7 +18,7 @@ static double speed_of_reach(double t) {
   return 0.4;
 }
 
-START_TEST(test_speed) {
+TEST(test_speed) {
   ethd_vec x, v;
   for (double t = -0.01; t < 0.4; t += 0.00037) {
     ethd_path_at(&reach, t, &x, &v);
@@ -27,10 +27,9 @@ START_TEST(test_speed) {
   }
   ck_assert_double_eq_tol(ethd_path_end(&reach), 0.305, 1e-15);
 }
-END_TEST
 
 /* The position is the integral of the defined speed (Simpson, 20 us). */
-START_TEST(test_position) {
+TEST(test_position) {
   double expected = 0.30, h = 20e-6;
   ethd_vec x, v;
   ethd_path_at(&reach, -1, &x, &v);
@@ -45,11 +44,10 @@ START_TEST(test_position) {
   ck_assert_double_eq_tol(x.x, 0.20, 1e-15);
   ck_assert(v.x == 0);
 }
-END_TEST
 
 /* To the right it is the mirror image. Too short for its ramps, it keeps speed and ramps and ends
  * beyond. */
-START_TEST(test_other_reaches) {
+TEST(test_other_reaches) {
   ethd_path right = reach, hop = reach;
   ethd_vec x, v, y, w;
   right.to_x = 0.40;
@@ -66,7 +64,6 @@ START_TEST(test_other_reaches) {
   ethd_path_at(&hop, 0.2, &x, &v);
   ck_assert_double_eq_tol(x.x, 0.30 - 0.4 * 0.055, 1e-15);
 }
-END_TEST
 
 /* ---- minimum jerk ---- */
 
@@ -75,7 +72,7 @@ static const ethd_path jerk = {
     .from = {0.30, 0.24}, .to_x = 0.20, .speed = 0.375, .profile = ETHD_PROFILE_MINIMUM_JERK};
 
 /* Position and speed as Flash and Hogan (1985) give them; at rest before and after; to the right the mirror image. */
-START_TEST(test_minimum_jerk) {
+TEST(test_minimum_jerk) {
   ethd_path right = jerk;
   ethd_vec x, v, y, w;
   right.to_x = 0.40;
@@ -92,11 +89,10 @@ START_TEST(test_minimum_jerk) {
   }
   ck_assert(x.x == 0.20);
 }
-END_TEST
 
 /* Its acceleration is greatest, 10 / sqrt(3) D / T^2, at s = (1 -+ 1 / sqrt(3)) / 2, and 0 at its ends and halfway; of all
    movements between rests without acceleration it has the least integral of squared jerk, 720 D^2 / T^5. */
-START_TEST(test_acceleration) {
+TEST(test_acceleration) {
   ethd__piece piece;
   ethd__path_piece(&jerk, 0, &piece);
   double most = 10 / sqrt(3) * 0.1 / 0.25, squared = 0, h = 1e-4;
@@ -109,10 +105,9 @@ START_TEST(test_acceleration) {
   }
   ck_assert_double_eq_tol(squared, 720 * 0.01 / pow(0.5, 5), 1e-4);
 }
-END_TEST
 
 /* The power series about any instant is the piece itself. */
-START_TEST(test_terms) {
+TEST_LOOP(test_terms, 0, 2) {
   static const ethd_path *const paths[] = {&reach, &jerk};
   for (double t = 0.001; t < 0.07; t += 0.001) {
     ethd__piece piece;
@@ -126,10 +121,9 @@ START_TEST(test_terms) {
     ck_assert_double_eq_tol(v, then.v.x, _i ? 1e-15 : 2e-10);
   }
 }
-END_TEST
 
 /* A movement of no length is a jump, not 0 / 0. */
-START_TEST(test_no_length) {
+TEST(test_no_length) {
   ethd_path still = jerk;
   ethd_vec x, v;
   for (int i = 0; i < 2; i++) {
@@ -140,7 +134,6 @@ START_TEST(test_no_length) {
     }
   }
 }
-END_TEST
 
 /* ---- recorded ---- */
 
@@ -159,7 +152,7 @@ static ethd_path record(ethd_path_sample *s, ethd_vec (*at)(double t)) {
 static ethd_vec parabola(double t) { return (ethd_vec){0.3 - 0.2 * t - 3 * t * t, 0.2 + t - 7 * t * t}; }
 
 /* Slopes of parabolas make a parabola exact, all but the end pieces; there the slope ends at 0. */
-START_TEST(test_parabola) {
+TEST(test_parabola) {
   ethd_path_sample s[COUNT];
   ethd_path path = record(s, parabola);
   ethd_vec x, v;
@@ -173,7 +166,6 @@ START_TEST(test_parabola) {
   }
   ck_assert(ethd_path_end(&path) == s[COUNT - 1].t);
 }
-END_TEST
 
 static ethd_vec jagged(double t) {
   uint64_t n = (uint64_t)(t * 1e6);
@@ -181,7 +173,7 @@ static ethd_vec jagged(double t) {
 }
 
 /* Whatever the samples: through each of them, one slope on both sides, still before and after. */
-START_TEST(test_through_samples) {
+TEST(test_through_samples) {
   ethd_path_sample s[COUNT];
   ethd_path path = record(s, jagged);
   for (int i = 0; i < COUNT; i++) {
@@ -203,9 +195,8 @@ START_TEST(test_through_samples) {
   ethd_path_at(&path, 9, &x, &v);
   ck_assert(x.x == s[COUNT - 1].x && x.y == s[COUNT - 1].y && v.x == 0 && v.y == 0);
 }
-END_TEST
 
-START_TEST(test_single_sample) {
+TEST(test_single_sample) {
   ethd_path_sample one = {0.5, 0.3, 0.2};
   ethd_path path = {.samples = &one, .sample_count = 1};
   ethd_vec x, v;
@@ -215,7 +206,6 @@ START_TEST(test_single_sample) {
   }
   ck_assert(ethd_path_end(&path) == 0.5);
 }
-END_TEST
 
 /* ---- both ---- */
 
@@ -235,17 +225,16 @@ static void derivatives_agree(const ethd_path *path, double from, double to) {
   }
 }
 
-START_TEST(test_derivatives) {
+TEST(test_derivatives) {
   ethd_path_sample s[COUNT];
   ethd_path path = record(s, parabola);
   derivatives_agree(&reach, -0.01, 0.4);
   derivatives_agree(&jerk, -0.01, 0.6);
   derivatives_agree(&path, 0.05, 0.3);
 }
-END_TEST
 
 /* A bound, also on a piece without an end, and mostly less than twice what it bounds. */
-START_TEST(test_travel) {
+TEST(test_travel) {
   int close = 0;
   for (uint64_t i = 0; i < 2000; i++) {
     ethd__piece piece = {.begin = -INFINITY, .end = INFINITY, .b = {draw(9 * i, -1, 1), draw(9 * i + 1, -1, 1)}};
@@ -269,24 +258,4 @@ START_TEST(test_travel) {
     close += bound < 2 * most;
   }
   ck_assert_int_gt(close, 1000);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("path");
-  TCase *t = tcase_create("path");
-  tcase_add_test(t, test_speed);
-  tcase_add_test(t, test_position);
-  tcase_add_test(t, test_other_reaches);
-  tcase_add_test(t, test_minimum_jerk);
-  tcase_add_test(t, test_acceleration);
-  tcase_add_loop_test(t, test_terms, 0, 2);
-  tcase_add_test(t, test_no_length);
-  tcase_add_test(t, test_parabola);
-  tcase_add_test(t, test_through_samples);
-  tcase_add_test(t, test_single_sample);
-  tcase_add_test(t, test_derivatives);
-  tcase_add_test(t, test_travel);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -8,7 +8,7 @@
 
 #include "ethd/config.h"
 #include "ethd/sim.h"
-#include "unit/rig.h"
+#include "unit/suite.h"
 
 #define PI 3.14159265358979323846
 
@@ -23,7 +23,11 @@ static void load(const char *name) {
 
 static void is(double value, double expected) { ck_assert_double_le(fabs(value - expected), 1e-12 * fabs(expected)); }
 
-START_TEST(test_n) {
+static void make_file(void) { ck_assert_int_eq(close(mkstemp(file)), 0); }
+static void remove_file(void) { unlink(file); }
+FIXTURE(make_file, remove_file)
+
+TEST(test_n) {
   load("n");
   const double got[] = {plant.mass[0],
                         plant.mass[1],
@@ -62,9 +66,8 @@ START_TEST(test_n) {
   for (size_t i = 0; i < sizeof got / sizeof *got; i++) is(got[i], expected[i]);
   ck_assert(isinf(plant.stiffness) && !plant.count_phase && !plant.reading && !plant.reference && !plant.metrics_side);
 }
-END_TEST
 
-START_TEST(test_b) {
+TEST(test_b) {
   load("b");
   const double got[] = {plant.mass[0],          plant.mass[1],      plant.force_limit,   plant.friction,
                         plant.viscous,          plant.delay,        plant.count,         plant.finger_mass,
@@ -76,10 +79,9 @@ START_TEST(test_b) {
                              73e-3,  50.6e-3, 0.67,  0.183, 0.468, 0.17};
   for (size_t i = 0; i < sizeof got / sizeof *got; i++) is(got[i], expected[i]);
 }
-END_TEST
 
 /* 88.1 Hz between free ends: k over the reduced mass. */
-START_TEST(test_p) {
+TEST(test_p) {
   load("p");
   double reduced = plant.motor_mass * (plant.mass[0] - plant.motor_mass) / plant.mass[0];
   ck_assert_double_eq_tol(sqrt(plant.stiffness / reduced) / (2 * PI), 88.1, 0.1);
@@ -95,11 +97,10 @@ START_TEST(test_p) {
   for (size_t i = 0; i < sizeof got / sizeof *got; i++) is(got[i], expected[i]);
   ck_assert(plant.count_phase && plant.reference && plant.metrics_side && !plant.reading);
 }
-END_TEST
 
 /* The rotors of the paper's motors, 70 g cm^2, at the ratio that the counts tell, are a part of the motor side; what q.ini and
    q.plant both say, they say alike. */
-START_TEST(test_q) {
+TEST(test_q) {
   load("q");
   double ratio = 2 * PI / (4000 * plant.count);
   ck_assert(ratio > 14 && ratio < 15 && plant.profile == ETHD_PROFILE_MINIMUM_JERK);
@@ -112,7 +113,6 @@ START_TEST(test_q) {
   ethd_config_free(config);
   ck_assert(plant.count_phase && plant.reference && plant.metrics_side && !plant.reading);
 }
-END_TEST
 
 /* ---- refusals ---- */
 
@@ -144,7 +144,7 @@ static void refused(const char *was, const char *now, const char *why) {
   ck_assert_msg(!strncmp(message, file, strlen(file)), "%s", message);
 }
 
-START_TEST(test_refused) {
+TEST(test_refused) {
   read_n();
   ck_assert_int_eq(try(text, strlen(text)), ETHD_OK);
   refused("force_limit = 5.357", "force_limit = 5.357x", ":7: device.force_limit: found \"5.357x\", 0 to 1000000 N");
@@ -162,10 +162,9 @@ START_TEST(test_refused) {
   refused("speed_spread = 0.19", "speed_spread = 0.5", "movement.speed_spread");
   refused("radius_sd = 0.43e-3", "radius_sd = 4e-3", "finger.radius_sd");
 }
-END_TEST
 
 /* Without any one of its lines the file isn't whole. */
-START_TEST(test_every_key_counts) {
+TEST(test_every_key_counts) {
   static char less[sizeof text];
   read_n();
   int keys = 0;
@@ -181,10 +180,9 @@ START_TEST(test_every_key_counts) {
   }
   ck_assert_int_eq(keys, 40);
 }
-END_TEST
 
 /* Cut anywhere before its last key's value, or no text at all. */
-START_TEST(test_no_plant) {
+TEST(test_no_plant) {
   read_n();
   size_t whole = (size_t)(strstr(text, "band_high = 0.08") - text) + strlen("band_high = ");
   for (size_t length = 0; length <= whole; length += 7) ck_assert_int_lt(try(text, length), 0);
@@ -192,24 +190,4 @@ START_TEST(test_no_plant) {
   ck_assert_int_eq(ethd_plant_load("apps/config/no-such.plant", &plant, message), ETHD_E_FILE);
   ck_assert_ptr_nonnull(strstr(message, "no-such.plant"));
   ck_assert_int_lt(ethd_plant_load("apps/config", &plant, message), 0);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("plant_file");
-  TCase *t = tcase_create("plant_file");
-  int made = mkstemp(file);
-  if (made < 0) return 1;
-  close(made);
-  tcase_add_test(t, test_n);
-  tcase_add_test(t, test_b);
-  tcase_add_test(t, test_p);
-  tcase_add_test(t, test_q);
-  tcase_add_test(t, test_refused);
-  tcase_add_test(t, test_every_key_counts);
-  tcase_add_test(t, test_no_plant);
-  suite_add_tcase(suite, t);
-  int failed = rig_run(suite);
-  unlink(file);
-  return failed;
 }

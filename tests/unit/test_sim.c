@@ -6,7 +6,7 @@
 
 #define PI 3.14159265358979323846
 
-START_TEST(test_start) {
+TEST(test_start) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
   ethd_sim *sim = sim_open(&def, &tap);
@@ -30,10 +30,9 @@ START_TEST(test_start) {
   ethd_sim_destroy(sim);
   ethd_sim_destroy(NULL);
 }
-END_TEST
 
 /* Ticks of a period that isn't a round number of nanoseconds are each rounded, not added up. */
-START_TEST(test_time) {
+TEST(test_time) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
   def.period = 1.0 / 3000;
@@ -46,12 +45,11 @@ START_TEST(test_time) {
   ck_assert_double_eq_tol(sim_truth(sim).t, 0.5, 1e-15);
   ethd_sim_destroy(sim);
 }
-END_TEST
 
 /* ---- motors ---- */
 
 /* Without friction th = alpha (t - delay)^2 / 2 from the first tick on; too much torque is cut at F L. */
-START_TEST(test_saturation_and_delay) {
+TEST_LOOP(test_saturation_and_delay, 0, 9) {
   static const double delays[] = {0, 71e-6, 273e-6, 0.9e-3, 1e-3, 1.3e-3, 2e-3, 7.6e-3, 8e-3};
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
@@ -70,10 +68,9 @@ START_TEST(test_saturation_and_delay) {
   }
   ethd_sim_destroy(sim);
 }
-END_TEST
 
 /* A step of torque between two ticks: v = a1 delay + a2 (T - delay). */
-START_TEST(test_torque_changes_in_time) {
+TEST(test_torque_changes_in_time) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
   def.plant.friction = def.plant.viscous = 0;
@@ -92,10 +89,9 @@ START_TEST(test_torque_changes_in_time) {
   }
   ethd_sim_destroy(sim);
 }
-END_TEST
 
 /* Safe commands and torques that are no numbers drive nothing. */
-START_TEST(test_safe) {
+TEST(test_safe) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
   ethd_sim *sim = sim_open(&def, &tap);
@@ -108,7 +104,6 @@ START_TEST(test_safe) {
   }
   ethd_sim_destroy(sim);
 }
-END_TEST
 
 /* ---- finger ---- */
 
@@ -123,7 +118,7 @@ static void follow(ethd_sim *sim) {
 }
 
 /* Left alone the finger is on its path: the synthetic ones, and a recorded one that shakes. */
-START_TEST(test_free_finger) {
+TEST_LOOP(test_free_finger, 0, 3) {
   enum { COUNT = 300 };
   ethd_path_sample samples[COUNT];
   ethd_sim_def def = sim_def();
@@ -150,10 +145,9 @@ START_TEST(test_free_finger) {
   }
   ethd_sim_destroy(sim);
 }
-END_TEST
 
 /* A ring that is held: the finger runs into it and is stopped a little within, by K p = k d at rest. */
-START_TEST(test_finger_against_ring) {
+TEST(test_finger_against_ring) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
   sim_hold(&def);
@@ -173,7 +167,6 @@ START_TEST(test_finger_against_ring) {
   ck_assert_double_gt(t.pad_force, 5);
   ethd_sim_destroy(sim);
 }
-END_TEST
 
 /* ---- equal bytes ---- */
 
@@ -186,7 +179,7 @@ static void run(ethd_sim *sim, ethd_truth *truth, ethd_sense *sense, int ticks) 
 }
 
 /* The same tap twice, in two devices, and after another tap; another seed or tap is another thing. */
-START_TEST(test_same_bytes) {
+TEST_LOOP(test_same_bytes, 0, 2) {
   enum { TICKS = 200 };
   static ethd_truth truth[4][TICKS];
   static ethd_sense sense[4][TICKS];
@@ -214,11 +207,10 @@ START_TEST(test_same_bytes) {
   ethd_sim_destroy(a);
   ethd_sim_destroy(b);
 }
-END_TEST
 
 /* ---- refusals ---- */
 
-START_TEST(test_refused_definitions) {
+TEST(test_refused_definitions) {
   static const struct {
     const char *name;
     size_t offset;
@@ -250,9 +242,8 @@ START_TEST(test_refused_definitions) {
     ck_assert_int_lt(ethd_sim_create(&def, &sim, NULL), 0);
   }
 }
-END_TEST
 
-START_TEST(test_refused_taps) {
+TEST(test_refused_taps) {
   ethd_sim_def def = sim_def();
   ethd_path_sample s[3] = {{0, 0.29, 0.25}, {0.1, 0.28, 0.25}, {0.2, 0.27, 0.25}};
   ethd_sim_tap good = sim_tap(), t;
@@ -281,22 +272,4 @@ START_TEST(test_refused_taps) {
   REFUSED(ETHD_OK, s[1].x = 0.29 - 0.999 * ETHD_HAND_SPEED_MAX * 0.1);
   REFUSED(ETHD_E_RANGE, s[2].x = s[1].x + 1.001 * ETHD_HAND_SPEED_MAX * 0.1);
   ethd_sim_destroy(sim);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("sim");
-  TCase *t = tcase_create("sim");
-  tcase_add_test(t, test_start);
-  tcase_add_test(t, test_time);
-  tcase_add_loop_test(t, test_saturation_and_delay, 0, 9);
-  tcase_add_test(t, test_torque_changes_in_time);
-  tcase_add_test(t, test_safe);
-  tcase_add_loop_test(t, test_free_finger, 0, 3);
-  tcase_add_test(t, test_finger_against_ring);
-  tcase_add_loop_test(t, test_same_bytes, 0, 2);
-  tcase_add_test(t, test_refused_definitions);
-  tcase_add_test(t, test_refused_taps);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -4,7 +4,7 @@
 
 #include "sim/body.h"
 #include "unit/draw.h"
-#include "unit/rig.h"
+#include "unit/suite.h"
 
 #define PI 3.14159265358979323846
 #define CELL 50e-6
@@ -64,7 +64,7 @@ static void run(world *w, double duration, double cell) {
 /* ---- one joint ---- */
 
 /* m v' = -b v: v = v0 exp(-b t / m), x = m/b (v0 - v). */
-START_TEST(test_viscous) {
+TEST(test_viscous) {
   ethd_sim_def def = quiet();
   def.plant.viscous = 3;
   world w;
@@ -76,10 +76,9 @@ START_TEST(test_viscous) {
   ck_assert_double_eq_tol(0.25 * (w.state.q[0] - PI / 2), 0.12 / 3 * (0.4 - v), 1e-12);
   ck_assert(w.state.v[1] == 0 && w.state.q[1] == 0);
 }
-END_TEST
 
 /* m v' = -f tanh(v / vs): sinh(v / vs) = sinh(v0 / vs) exp(-f t / (m vs)). */
-START_TEST(test_friction) {
+TEST(test_friction) {
   ethd_sim_def def = quiet();
   def.plant.friction = 0.4;
   world w;
@@ -93,10 +92,9 @@ START_TEST(test_friction) {
     }
   }
 }
-END_TEST
 
 /* A constant torque: th = tau t^2 / (2 I). */
-START_TEST(test_torque) {
+TEST(test_torque) {
   ethd_sim_def def = quiet();
   world w;
   alone(&def, 1, 0.2, &w);
@@ -106,13 +104,12 @@ START_TEST(test_torque) {
   ck_assert_double_eq_tol(w.state.q[0], 1 + 0.3 * 0.00125 / (0.12 * 0.0625), 1e-12);
   ck_assert_double_eq_tol(w.state.q[1], 0.2 - 0.7 * 0.00125 / (0.25 * 0.0625), 1e-12);
 }
-END_TEST
 
 /* ---- finger ---- */
 
 /* The ring as good as fixed, the hand's rest where pad and ring just touch: half a period with the hand
    alone, half with hand and pad, each a sine. */
-START_TEST(test_two_springs) {
+TEST(test_two_springs) {
   ethd_sim_def def = quiet();
   world w;
   put(&def, PI / 2, 0, 0.0045, &w);
@@ -129,11 +126,10 @@ START_TEST(test_two_springs) {
     ck_assert(w.state.q[3] == 0.25);
   }
 }
-END_TEST
 
 /* The finger pressed on a ring as good as fixed by a hand of minimum jerk, both at rest at first. From its path h it is
    y away: m y'' = -k y - K (h + y - r) is solved by y = -K / (k + K) (h - r - h''/w^2 + h''''/w^4) and a sine. */
-START_TEST(test_hand_of_minimum_jerk) {
+TEST(test_hand_of_minimum_jerk) {
   enum { MS = 80 };
   const double length = 0.02, whole = 1e-3 * MS, stiffness = 280 + 27000, square = stiffness / 0.07;
   const ethd_path path = {.from = {0.258, 0.25},
@@ -161,10 +157,9 @@ START_TEST(test_hand_of_minimum_jerk) {
     ck_assert(w.state.q[3] == 0.25 && w.state.touch == ETHD__PRESSING);
   }
 }
-END_TEST
 
 /* A blow on the finger dies away in the hand: m x'' + b x' + k x = 0. */
-START_TEST(test_hand) {
+TEST(test_hand) {
   ethd_sim_def def = quiet();
   def.plant.hand_damping = 4.27;
   world w;
@@ -174,10 +169,9 @@ START_TEST(test_hand) {
   double d = 4.27 / (2 * 0.07), f = sqrt(280 / 0.07 - d * d);
   ck_assert_double_eq_tol(w.state.q[3] - 0.25, 0.2 / f * exp(-d * 0.05) * sin(f * 0.05), 1e-11);
 }
-END_TEST
 
 /* Pressed together and let go: the force follows K p (1 + c p_dot), never pulls, and stops at p = 0. */
-START_TEST(test_pad) {
+TEST(test_pad) {
   ethd_sim_def def = quiet();
   def.plant.pad_damping = 1.5;
   world w;
@@ -205,12 +199,11 @@ START_TEST(test_pad) {
   ck_assert_int_gt(touched, 50);
   ck_assert_int_gt(left, 1);
 }
-END_TEST
 
 /* ---- both links ---- */
 
 /* Nothing is lost: coupled links, either mechanism, rigid or not, the finger knocking about in the ring. */
-START_TEST(test_energy) {
+TEST_LOOP(test_energy, 0, 8) {
   ethd_sim_def def = quiet();
   def.arm.mechanism = (ethd_mechanism)(_i & 1);
   def.plant.coupling = _i & 2 ? 0.006 : 0;
@@ -237,10 +230,9 @@ START_TEST(test_energy) {
   ck_assert_double_le(most, 1e-7);
   ck_assert_int_gt(touches, 5);
 }
-END_TEST
 
 /* Work of a torque is the energy it leaves: tau dq of the joints. */
-START_TEST(test_work) {
+TEST_LOOP(test_work, 0, 2) {
   ethd_sim_def def = quiet();
   def.arm.mechanism = (ethd_mechanism)(_i & 1);
   def.plant.coupling = 0.006;
@@ -256,10 +248,9 @@ START_TEST(test_work) {
   ck_assert_double_gt(work, 1e-4);
   ck_assert_double_eq_tol(ethd__body_energy(&w.body, &w.state, w.hand.a), work, 1e-11);
 }
-END_TEST
 
 /* Lagrange's equations from the energy alone, by differences: d/dt dT/dth' - dT/dth = generalised torque. */
-START_TEST(test_equations) {
+TEST(test_equations) {
   ethd_sim_def def = quiet();
   def.plant.coupling = 0.006;
   world w;
@@ -297,10 +288,9 @@ START_TEST(test_equations) {
     ck_assert_double_eq_tol(momentum_rate[j] - slope[j], w.body.torque[j], 1e-5);
   }
 }
-END_TEST
 
 /* The same torques on the links move either mechanism's ring alike: serial tau1 = g1 + g2, tau2 = g2. */
-START_TEST(test_mechanisms) {
+TEST(test_mechanisms) {
   ethd_sim_def def = quiet();
   world w[2];
   def.plant.coupling = 0.004;
@@ -323,12 +313,11 @@ START_TEST(test_mechanisms) {
   }
   ck_assert_double_gt(fabs(w[0].state.q[2] - w[0].hand.a.x), 1e-4); /* they touched */
 }
-END_TEST
 
 /* ---- transmission ---- */
 
 /* Between free ends, motor against link: f = sqrt(k / mu) / 2 pi, 88.15 Hz with plant p's numbers. */
-START_TEST(test_transmission) {
+TEST(test_transmission) {
   ethd_sim_def def = quiet();
   def.plant.mass[0] = def.plant.mass[1] = 0.09475;
   def.plant.motor_mass = 0.01322;
@@ -350,10 +339,9 @@ START_TEST(test_transmission) {
     }
   }
 }
-END_TEST
 
 /* A stiff one is as good as none. */
-START_TEST(test_stiff_transmission) {
+TEST(test_stiff_transmission) {
   ethd_sim_def def = quiet();
   def.plant.viscous = 1;
   world w[2];
@@ -370,7 +358,6 @@ START_TEST(test_stiff_transmission) {
   for (int i = 0; i < 4; i++) ck_assert_double_eq_tol(w[0].state.q[i], w[1].state.q[i], 2e-5);
   ck_assert_double_gt(PI / 2 - w[0].state.q[0], 0.01);
 }
-END_TEST
 
 /* ---- order ---- */
 
@@ -392,7 +379,7 @@ static world knock(const ethd_sim_def *def, uint64_t n, double cell, int *touche
 
 /* Halving the longest step cuts the error 14 times at least, or there is none left: through contacts,
    friction that turns, both mechanisms, rigid and compliant; rms over runs. */
-START_TEST(test_order) {
+TEST_LOOP(test_order, 0, 4) {
   enum { RUNS = 24, STEPS = 4 };
   ethd_sim_def def = quiet();
   def.arm.mechanism = (ethd_mechanism)(_i & 1);
@@ -425,26 +412,4 @@ START_TEST(test_order) {
     if (k == 1) ck_assert_double_le(error, 1e-8); /* 50 us */
   }
   ck_assert_int_gt(touches, RUNS);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("sim_body");
-  TCase *t = tcase_create("sim_body");
-  tcase_add_test(t, test_viscous);
-  tcase_add_test(t, test_friction);
-  tcase_add_test(t, test_torque);
-  tcase_add_test(t, test_two_springs);
-  tcase_add_test(t, test_hand_of_minimum_jerk);
-  tcase_add_test(t, test_hand);
-  tcase_add_test(t, test_pad);
-  tcase_add_loop_test(t, test_energy, 0, 8);
-  tcase_add_loop_test(t, test_work, 0, 2);
-  tcase_add_test(t, test_equations);
-  tcase_add_test(t, test_mechanisms);
-  tcase_add_test(t, test_transmission);
-  tcase_add_test(t, test_stiff_transmission);
-  tcase_add_loop_test(t, test_order, 0, 4);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -21,7 +21,7 @@ static void standard(const ethd_plant *p, const ethd_sim_tap *t, double speed, e
   z[5] = t->phase * p->rate;
 }
 
-START_TEST(test_moments) {
+TEST_LOOP(test_moments, 0, 4) {
   static const char *const plants[] = {"n", "b", "p", "q"};
   char path[64], message[ETHD_MESSAGE_MAX];
   snprintf(path, sizeof path, "apps/config/%s.plant", plants[_i]);
@@ -55,10 +55,9 @@ START_TEST(test_moments) {
     for (int j = 0; j < i; j++) ck_assert_double_eq_tol(cross[i][j], 0, 4.5 / sqrt(MANY));
   }
 }
-END_TEST
 
 /* The same key draws the same; the same numbers stand behind any speed and place. */
-START_TEST(test_key) {
+TEST(test_key) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap a, b;
   double y[DRAWN], z[DRAWN];
@@ -78,10 +77,9 @@ START_TEST(test_key) {
     for (int i = 0; i < DRAWN; i++) ck_assert_double_gt(fabs(y[i] - z[i]), 1e-6);
   }
 }
-END_TEST
 
 /* A movement of minimum jerk passes `meet` at the commanded speed, unless it were more than 3 times as fast halfway. */
-START_TEST(test_speed_at_the_wall) {
+TEST(test_speed_at_the_wall) {
   ethd_sim_def def = sim_def();
   const ethd_vec meet = {0.25, 0.24};
   def.plant.profile = ETHD_PROFILE_MINIMUM_JERK;
@@ -106,10 +104,9 @@ START_TEST(test_speed_at_the_wall) {
   }
   ck_assert(capped > 20 && capped < 1000);
 }
-END_TEST
 
 /* A hand that would be faster than any isn't drawn, and neither one that doesn't move. */
-START_TEST(test_extreme_movements) {
+TEST(test_extreme_movements) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap t;
   def.plant.profile = ETHD_PROFILE_MINIMUM_JERK;
@@ -118,16 +115,4 @@ START_TEST(test_extreme_movements) {
   def.plant.start = def.plant.start_sd = def.plant.overshoot = 0;
   ethd_sim_draw(&def.plant, 4, 1, 0.4, (ethd_vec){0.25, 0.24}, &t);
   ethd_sim_destroy(sim_open(&def, &t));
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("sim_draw");
-  TCase *t = tcase_create("sim_draw");
-  tcase_add_loop_test(t, test_moments, 0, 4);
-  tcase_add_test(t, test_key);
-  tcase_add_test(t, test_speed_at_the_wall);
-  tcase_add_test(t, test_extreme_movements);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

@@ -41,16 +41,15 @@ static void refused(const char *key, const char *value, ethd_status status, cons
   ck_assert_msg(strstr(message, name) != NULL, "%s = %s: %s", key, value, message);
 }
 
-START_TEST(test_table) {
+TEST(test_table) {
   ck_assert_str_eq(ethd_driver_sim.id, "sim");
   ck_assert_uint_eq(ethd_driver_sim.size, sizeof(ethd_driver));
   ck_assert_uint_eq(ethd_driver_sim.abi, ETHD_DRIVER_ABI);
   ethd_error error;
   ck_assert_int_eq(ethd_params_check_table(ethd_driver_sim.params, ethd_driver_sim.param_count, &error), ETHD_OK);
 }
-END_TEST
 
-START_TEST(test_refused) {
+TEST(test_refused) {
   refused("colour", "red", ETHD_E_UNKNOWN, "colour");
   refused("step", "1x", ETHD_E_SYNTAX, "step");
   refused("step", "0", ETHD_E_RANGE, "step");
@@ -62,10 +61,9 @@ START_TEST(test_refused) {
   refused("plant", "x", ETHD_E_FILE, "x.plant");
   refused("plant", "wall.scene", ETHD_E_SYNTAX, "wall.scene:2");
 }
-END_TEST
 
 /* The same device as the one that is built by hand. */
-START_TEST(test_lock_step) {
+TEST(test_lock_step) {
   static const ethd_setting settings[] = {
       {"plant", "p", 1}, {"seed", "9", 2}, {"tap", "4", 3}, {"speed", "0.3", 4}, {"reading", "rays", 5}};
   void *device = open_with(settings, 5);
@@ -99,10 +97,9 @@ START_TEST(test_lock_step) {
   ethd_driver_sim.close(device);
   ethd_sim_destroy(sim);
 }
-END_TEST
 
 /* A loop hangs after it has asked for torque: the time that passes once the device is safe passes without it. */
-START_TEST(test_safe_while_it_catches_up) {
+TEST(test_safe_while_it_catches_up) {
   double moved[2];
   for (int is_safe = 0; is_safe < 2; is_safe++) {
     void *device = open_with(NULL, 0);
@@ -118,10 +115,9 @@ START_TEST(test_safe_while_it_catches_up) {
   ck_assert_double_gt(moved[0], 0.05);
   ck_assert_double_lt(moved[1], 0.05 * moved[0]); /* the first period's torque was under way */
 }
-END_TEST
 
 /* Once safe, nothing drives it until it is started anew. */
-START_TEST(test_safe) {
+TEST(test_safe) {
   void *device = open_with(NULL, 0);
   ethd_sense a = {0}, b = {0};
   ethd_command push = {{1, 0}, 0, 0};
@@ -136,10 +132,9 @@ START_TEST(test_safe) {
   ck_assert_double_gt(fabs(a.q[0] - b.q[0]), 1e-3);
   ethd_driver_sim.close(device);
 }
-END_TEST
 
 /* What another driver, or a tick without a step, has put into the sense stays, but for what the sim gives itself. */
-START_TEST(test_adds) {
+TEST(test_adds) {
   void *device = open_with(NULL, 0);
   ethd_sense s = {.have = ETHD_HAVE_DQ | ETHD_HAVE_BODY | ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD,
                   .faults = 2,
@@ -154,20 +149,18 @@ START_TEST(test_adds) {
   ck_assert(s.have & ETHD_HAVE_CENTRE && s.have & ETHD_HAVE_WORLD && s.finger_noise == 6);
   ethd_driver_sim.close(device);
 }
-END_TEST
 
 /* What the motors give: 5.357 N at the shorter link. */
-START_TEST(test_limits) {
+TEST(test_limits) {
   void *device = open_with(NULL, 0);
   ethd_limits limits = ethd_driver_sim.limits(device);
   ck_assert_double_eq_tol(limits.torque, 5.357 * 0.25, 1e-15);
   ck_assert(isinf(limits.torque_rate) && isinf(limits.speed));
   ethd_driver_sim.close(device);
 }
-END_TEST
 
 /* A plant's letter is a file beside the configuration, else one of ETHD_DATA_DIR; a path is a path. */
-START_TEST(test_where_plants_are) {
+TEST(test_where_plants_are) {
   const ethd_setting letter = {"plant", "b", 1}, path = {"plant", "../../" FOLDER "/b.plant", 1};
   setup = ethd_setup_default();
   const ethd_device_def defs[] = {{&setup, &letter, 1, FOLDER, NULL, 1},
@@ -185,10 +178,9 @@ START_TEST(test_where_plants_are) {
     ethd_driver_sim.close(device);
   }
 }
-END_TEST
 
 /* A wall elsewhere; one that the arm can't reach. */
-START_TEST(test_meet) {
+TEST(test_meet) {
   const ethd_setting near[] = {{"meet_x", "0.1", 1}, {"meet_y", "0.3", 2}, {"tap", "1", 3}};
   void *device = open_with(near, 3);
   ethd_sense s = {0};
@@ -200,21 +192,4 @@ START_TEST(test_meet) {
   char message[ETHD_MESSAGE_MAX];
   ck_assert_int_eq(try(&far, 1, &device, message), ETHD_E_UNREACHABLE);
   ck_assert_ptr_null(device);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("sim_driver");
-  TCase *t = tcase_create("sim_driver");
-  tcase_add_test(t, test_table);
-  tcase_add_test(t, test_refused);
-  tcase_add_test(t, test_lock_step);
-  tcase_add_test(t, test_safe);
-  tcase_add_test(t, test_safe_while_it_catches_up);
-  tcase_add_test(t, test_adds);
-  tcase_add_test(t, test_limits);
-  tcase_add_test(t, test_where_plants_are);
-  tcase_add_test(t, test_meet);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

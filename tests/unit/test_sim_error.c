@@ -66,7 +66,7 @@ static double difference(int ticks) {
   return most;
 }
 
-START_TEST(test_error) {
+TEST_LOOP(test_error, 0, 12) {
   static const char *const letters[] = {"q", "n", "b", "p"}, *const laws[] = {"abrupt", "smooth", "offset"};
   const char *letter = letters[_i % 4], *law = laws[_i / 4];
   double most = 0;
@@ -87,14 +87,4 @@ START_TEST(test_error) {
   ck_assert_int_ge(agree, TAPS - 1);
   close_loop(&coarse);
   close_loop(&fine);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("sim_error");
-  TCase *t = tcase_create("sim_error");
-  tcase_set_timeout(t, 60);
-  tcase_add_loop_test(t, test_error, 0, 12);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

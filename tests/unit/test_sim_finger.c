@@ -63,17 +63,16 @@ static void check_timing(const seen *s, double rate, double latency) {
 }
 
 /* The camera's noise is white: 36 readings, each axis. */
-START_TEST(test_camera) {
+TEST(test_camera) {
   ethd_sim_def def = with(ETHD_READING_CAMERA);
   seen s = watch(&def, ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD);
   check_timing(&s, 90, 11.1e-3);
   ck_assert_double_eq_tol(sqrt(s.told), 0.15e-3, 1e-12);
   for (int i = 0; i < 2; i++) ck_assert_double_eq_tol(sqrt(s.square[i]) / 0.15e-3, 1, 0.35);
 }
-END_TEST
 
 /* The plate's distance along x; across it nothing is known. */
-START_TEST(test_nail) {
+TEST(test_nail) {
   ethd_sim_def def = with(ETHD_READING_NAIL);
   seen s = watch(&def, ETHD_HAVE_CENTRE | ETHD_HAVE_RING);
   check_timing(&s, 300, 1.2e-3);
@@ -84,10 +83,9 @@ START_TEST(test_nail) {
   ck_assert_double_eq_tol(sqrt(s.told), 10e-3 / 1024 / sqrt(12), 1e-12);
   ck_assert_double_le(sqrt(s.square[0]), 2 * sqrt(s.told));
 }
-END_TEST
 
 /* Barriers: an error of tenths of a millimetre, which each reading tells about; finer with more of them. */
-START_TEST(test_zones) {
+TEST(test_zones) {
   double error[2];
   for (int i = 0; i < 2; i++) {
     ethd_sim_def def = with(ETHD_READING_ZONES);
@@ -101,7 +99,6 @@ START_TEST(test_zones) {
   }
   ck_assert_double_lt(error[1], error[0]);
 }
-END_TEST
 
 /* ---- [device] ---- */
 
@@ -118,7 +115,7 @@ static ethd_status open_sim(const char *key, const char *value, ethd_limits *lim
   return ETHD_OK;
 }
 
-START_TEST(test_settings) {
+TEST(test_settings) {
   char message[ETHD_MESSAGE_MAX];
   ethd_limits limits;
   ck_assert_msg(!open_sim(NULL, "camera", &limits, message), "%s", message);
@@ -135,16 +132,4 @@ START_TEST(test_settings) {
     ck_assert_int_lt(open_sim(bad[i][0], bad[i][1], &limits, message), 0);
     ck_assert_msg(strstr(message, bad[i][2]) == message, "%s", message);
   }
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("sim_finger");
-  TCase *tc = tcase_create("sim_finger");
-  tcase_add_test(tc, test_camera);
-  tcase_add_test(tc, test_nail);
-  tcase_add_test(tc, test_zones);
-  tcase_add_test(tc, test_settings);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
 }

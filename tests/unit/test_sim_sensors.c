@@ -15,7 +15,7 @@ static double grid_of(ethd_sim *sim, const ethd_sim_def *def, const double q[2],
   return share - floor(share);
 }
 
-START_TEST(test_counts) {
+TEST_LOOP(test_counts, 0, 2) {
   ethd_sim_def def = sim_def(), ideal = sim_def();
   ethd_sim_tap tap = sim_tap();
   def.plant.count = 2e-4;
@@ -44,10 +44,9 @@ START_TEST(test_counts) {
       if (_i) ck_assert_double_gt(fabs(phases[k][0] - phases[k][1]), 1e-3);
     }
 }
-END_TEST
 
 /* Behind a compliant transmission the encoders see the motors' side, and `motor` is where that puts the ring. */
-START_TEST(test_motor_side) {
+TEST_LOOP(test_motor_side, 0, 2) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
   def.arm.mechanism = (ethd_mechanism)_i;
@@ -68,7 +67,6 @@ START_TEST(test_motor_side) {
   ck_assert_double_gt(apart, 1e-4);
   ethd_sim_destroy(sim);
 }
-END_TEST
 
 /* ---- readings ---- */
 
@@ -99,7 +97,7 @@ static void arrivals(double rate, double latency, double phase, int ticks) {
   ethd_sim_destroy(sim);
 }
 
-START_TEST(test_arrivals) {
+TEST(test_arrivals) {
   arrivals(300, 1.93e-3, 0, 100);
   arrivals(300, 1.93e-3, 3.1e-3, 100);
   arrivals(300, 0, 0, 100);     /* the first comes with the start */
@@ -107,10 +105,9 @@ START_TEST(test_arrivals) {
   arrivals(2500, 0.3e-3, 0.1e-3, 100);
   arrivals(300, 0.2, 1e-3, 300); /* sixty on their way */
 }
-END_TEST
 
 /* Where ring and finger were at the sample's instant, worked out with ticks as short as that takes. */
-START_TEST(test_pose_at_the_sample) {
+TEST_LOOP(test_pose_at_the_sample, 0, 2) {
   ethd_sim_def def = sim_def(), fine = sim_def();
   ethd_sim_tap tap = sim_tap();
   def.plant.reference = _i;
@@ -147,10 +144,9 @@ START_TEST(test_pose_at_the_sample) {
   ethd_sim_destroy(sim);
   ethd_sim_destroy(truth);
 }
-END_TEST
 
 /* Mean 0, the plant's sd, not cut; x and y and neighbours have nothing to do with each other. */
-START_TEST(test_noise) {
+TEST(test_noise) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
   def.plant.noise = 1e-4;
@@ -188,7 +184,6 @@ START_TEST(test_noise) {
   ck_assert_double_gt(most, 3);
   ethd_sim_destroy(sim);
 }
-END_TEST
 
 /* ---- rays ---- */
 
@@ -201,7 +196,7 @@ static double free_way(double ring, double r, const double c[2], int k) {
 
 /* A ring that stands still and a finger on a known path: each ray sees it at its own instant, and the frame
    is of the middle. */
-START_TEST(test_rays) {
+TEST_LOOP(test_rays, 0, 2) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
   def.plant.reading = 1;
@@ -232,9 +227,8 @@ START_TEST(test_rays) {
   ck_assert_int_ge(frames, 37);
   ethd_sim_destroy(sim);
 }
-END_TEST
 
-START_TEST(test_ray_noise) {
+TEST(test_ray_noise) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
   def.plant.reading = 1;
@@ -260,19 +254,4 @@ START_TEST(test_ray_noise) {
   for (int j = 0; j < 16; j++) ck_assert_double_eq_tol(square[j] / frames, 1, 4.5 * sqrt(2.0 / frames));
   ck_assert_double_eq_tol(pairs / frames, 0, 4 * sqrt(1.0 / frames / 16));
   ethd_sim_destroy(sim);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("sim_sensors");
-  TCase *t = tcase_create("sim_sensors");
-  tcase_add_loop_test(t, test_counts, 0, 2);
-  tcase_add_loop_test(t, test_motor_side, 0, 2);
-  tcase_add_test(t, test_arrivals);
-  tcase_add_loop_test(t, test_pose_at_the_sample, 0, 2);
-  tcase_add_test(t, test_noise);
-  tcase_add_loop_test(t, test_rays, 0, 2);
-  tcase_add_test(t, test_ray_noise);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

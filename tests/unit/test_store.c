@@ -14,7 +14,7 @@
 #include "text/file.h"
 #include "text/text.h"
 #include "unit/draw.h"
-#include "unit/rig.h"
+#include "unit/suite.h"
 
 #define HASH "12ab"
 
@@ -88,8 +88,10 @@ static void begin(void) {
   run("INSERT INTO hand VALUES ('mouse')");
 }
 
+FIXTURE(setup, teardown)
+
 /* Every bit of a figure comes back, the sign of zero too, and seeds of 64 bits. */
-START_TEST(test_a_tap_comes_back) {
+TEST(test_a_tap_comes_back) {
   char *text[ETHD_TABLES];
   begin();
   put_tap(1, ETHD_TAP_OK);
@@ -102,9 +104,8 @@ START_TEST(test_a_tap_comes_back) {
   for (int i = 0; i < ETHD_TABLES; i++) free(text[i]);
   ethd__store_close(&store);
 }
-END_TEST
 
-START_TEST(test_every_word_may_be_put) {
+TEST(test_every_word_may_be_put) {
   open_store();
   for (int i = 0; i < ETHD_HAND_SOURCES; i++) {
     sqlite3_stmt *insert = ethd__store_query(&store, "INSERT INTO hand VALUES (?)");
@@ -115,10 +116,9 @@ START_TEST(test_every_word_may_be_put) {
   ck_assert_int_eq(number("SELECT sum(valid) FROM tap"), 1);
   ethd__store_close(&store);
 }
-END_TEST
 
 /* What the checks of the tables refuse leaves the store as it was. */
-START_TEST(test_what_cannot_be_put) {
+TEST(test_what_cannot_be_put) {
   static const char *const bad[] = {"INSERT INTO hand VALUES ('paw')", "UPDATE tap SET reason = 'odd'",
                                     "UPDATE tap SET valid = 0",        "UPDATE tap SET seed = '-1'",
                                     "UPDATE tap SET by_ring = ''",     "UPDATE tap SET hand = 'device'",
@@ -134,11 +134,10 @@ START_TEST(test_what_cannot_be_put) {
   ck_assert_int_eq(number("SELECT count(*) FROM tap WHERE reason = 'ok'"), 1);
   ethd__store_close(&store);
 }
-END_TEST
 
 /* ---- one writer ---- */
 
-START_TEST(test_one_at_a_time) {
+TEST(test_one_at_a_time) {
   int pipe_of[2];
   char byte = 0, pid[32];
   ck_assert_int_eq(pipe(pipe_of), 0);
@@ -156,11 +155,10 @@ START_TEST(test_one_at_a_time) {
   open_store();
   ethd__store_close(&store);
 }
-END_TEST
 
 /* Killed in a transaction: the rows before it are there. Reading such a file is refused, and so is a journal that names
    another file, which SQLite would remove. */
-START_TEST(test_killed_in_a_transaction) {
+TEST(test_killed_in_a_transaction) {
   char journal[128], victim[128], kept[160];
   begin();
   put_tap(1, ETHD_TAP_OK);
@@ -213,11 +211,10 @@ START_TEST(test_killed_in_a_transaction) {
   ethd__store_close(&store);
   ck_assert_int_ne(access(journal, F_OK), 0);
 }
-END_TEST
 
 /* ---- a stranger's ---- */
 
-START_TEST(test_anothers_tables) {
+TEST(test_anothers_tables) {
   static const struct {
     const char *sql, *word;
   } cases[] = {
@@ -257,9 +254,8 @@ START_TEST(test_anothers_tables) {
   done(ethd_text_write(path, "begin hash 12ab #1234abcd\n", 26, message));
   refused(ethd__store_open(path, HASH, &store, message), "isn't a study");
 }
-END_TEST
 
-START_TEST(test_no_file_of_its_own) {
+TEST(test_no_file_of_its_own) {
   ethd__received received;
   char other[128];
   ethd__received_enter(&received, folder);
@@ -282,10 +278,9 @@ START_TEST(test_no_file_of_its_own) {
   refused(ethd__store_open(path, HASH, &store, message), "journal of an earlier version");
   ethd__received_leave(&received);
 }
-END_TEST
 
 /* A link in the way to the folder is the user's own, and the path may have any letter. */
-START_TEST(test_any_path) {
+TEST(test_any_path) {
   char link[128], way[160];
   snprintf(link, sizeof link, "%s/a link?mode=memory#%%41", folder);
   ck_assert_int_eq(symlink(".", link), 0);
@@ -298,10 +293,9 @@ START_TEST(test_any_path) {
   ck_assert_int_eq(number("SELECT count(*) FROM hand"), 1);
   refused((ethd__store_close(&store), ethd__store_read(way, "other", &store, message)), "begun with other files");
 }
-END_TEST
 
 /* Cut, or with other bytes anywhere: read as it was put, or refused in one line; never written, and soon over. */
-START_TEST(test_mutations) {
+TEST(test_mutations) {
   enum { CASES = 3000 };
   const char *more = getenv("ETHD_FUZZ");
   uint64_t count = more ? strtoull(more, NULL, 10) : CASES, taken = 0;
@@ -339,11 +333,10 @@ START_TEST(test_mutations) {
   ck_assert_uint_lt(taken, count);
   free(whole);
 }
-END_TEST
 
 /* ---- several into one ---- */
 
-START_TEST(test_added) {
+TEST(test_added) {
   ethd__study_store both;
   char other[128];
   begin();
@@ -363,24 +356,4 @@ START_TEST(test_added) {
   ck_assert_int_eq(number("SELECT count(*) FROM study JOIN hand ON word = 'mouse'"), 1);
   ethd__store_close(&both);
   store = ETHD_STORE_NONE;
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("store");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 600);
-  tcase_add_checked_fixture(all, setup, teardown);
-  tcase_add_test(all, test_a_tap_comes_back);
-  tcase_add_test(all, test_every_word_may_be_put);
-  tcase_add_test(all, test_what_cannot_be_put);
-  tcase_add_test(all, test_one_at_a_time);
-  tcase_add_test(all, test_killed_in_a_transaction);
-  tcase_add_test(all, test_anothers_tables);
-  tcase_add_test(all, test_no_file_of_its_own);
-  tcase_add_test(all, test_any_path);
-  tcase_add_test(all, test_mutations);
-  tcase_add_test(all, test_added);
-  suite_add_tcase(suite, all);
-  return rig_run(suite);
 }

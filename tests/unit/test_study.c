@@ -9,7 +9,7 @@
 #include "study/row.h"
 #include "text/sha256.h"
 #include "unit/mutate.h"
-#include "unit/rig.h"
+#include "unit/suite.h"
 
 static ethd__protocol protocol;
 static char message[ETHD_MESSAGE_MAX];
@@ -22,7 +22,7 @@ static void read(const char *text) { ck_assert_msg(parse(text) == ETHD_OK, "%s",
 
 /* ---- the file ---- */
 
-START_TEST(test_an_empty_file_is_a_study) {
+TEST(test_an_empty_file_is_a_study) {
   read("");
   ck_assert_uint_eq(protocol.participants, 3);
   ck_assert_uint_eq(protocol.strategies.count, 2);
@@ -32,7 +32,6 @@ START_TEST(test_an_empty_file_is_a_study) {
   ck_assert_uint_eq(ethd__protocol_points(&protocol), 1);
   ethd__protocol_free(&protocol);
 }
-END_TEST
 
 static const char everything[] =
     "[study]\nname = all\nseed = 18446744073709551615\nparticipants = 1000000\nstrategies = a, b ,c\nspeeds = low,0.3\n"
@@ -41,7 +40,7 @@ static const char everything[] =
     "[validity]\nband_low = 0.05\nband_high = 0.1\ngraze = 0\nlift = 0.01\n[grid]\ncontact.k_e = 1,2,3\ntransition.b_d "
     "= 5,6\n";
 
-START_TEST(test_every_key) {
+TEST(test_every_key) {
   read(everything);
   ck_assert_str_eq(protocol.name, "all");
   ck_assert(protocol.seed == UINT64_MAX);
@@ -55,26 +54,23 @@ START_TEST(test_every_key) {
   ck_assert_str_eq(ethd__protocol_value(&protocol, 5, 0), "3");
   ethd__protocol_free(&protocol);
 }
-END_TEST
 
-START_TEST(test_attempts_follow_the_taps_that_are_wanted) {
+TEST(test_attempts_follow_the_taps_that_are_wanted) {
   read("[study]\ntaps = 60\n");
   ck_assert_uint_eq(protocol.attempts, 800);
   ethd__protocol_free(&protocol);
   ck_assert_int_eq(parse("[study]\ntaps = 60\nattempts = 59\n"), ETHD_E_RANGE);
 }
-END_TEST
 
-START_TEST(test_a_grid_has_an_end) {
+TEST(test_a_grid_has_an_end) {
   char text[2048] = "[grid]\n";
   for (int i = 0; i < 6; i++) sprintf(text + strlen(text), "a.k%d = 1,2,3,4,5,6,7,8\n", i);
   ck_assert_int_eq(parse(text), ETHD_E_RANGE); /* 8^6 */
   ck_assert_ptr_nonnull(strstr(message, "x.study:7: grid.a.k5"));
 }
-END_TEST
 
 /* Whatever is refused says one line with the file, and leaves nothing behind for a sanitizer to find. */
-START_TEST(test_mutations) {
+TEST(test_mutations) {
   static const char *const words[] = {"[grid]", "[hand]\n", "taps = ", "1e999", "nan", ",",
                                       "=",      "\n",       "latin",   "\0x",   "-",   NULL};
   static char text[8192];
@@ -95,7 +91,6 @@ START_TEST(test_mutations) {
   ck_assert_uint_gt(taken, 100);
   ck_assert_uint_lt(taken, count);
 }
-END_TEST
 
 /* ---- order ---- */
 
@@ -111,7 +106,7 @@ static const char *order_of(uint32_t participant) {
   return text;
 }
 
-START_TEST(test_the_papers_order) {
+TEST(test_the_papers_order) {
   read("");
   ck_assert_str_eq(order_of(0), "tA0B0A0tA1B1A1");
   ck_assert_str_eq(order_of(1), "tB0A0B0tB1A1B1");
@@ -123,7 +118,6 @@ START_TEST(test_the_papers_order) {
   ck_assert_str_eq(order_of(2), "A0B0C0");
   ethd__protocol_free(&protocol);
 }
-END_TEST
 
 /* Every cell as often at every place, and behind every other. */
 static void check_latin(const char *text, size_t cells, uint32_t people) {
@@ -147,15 +141,14 @@ static void check_latin(const char *text, size_t cells, uint32_t people) {
   ethd__protocol_free(&protocol);
 }
 
-START_TEST(test_latin_squares) {
+TEST(test_latin_squares) {
   check_latin("[study]\norder = latin\ntraining = 0\n", 4, 8);
   check_latin("[study]\norder = latin\ntraining = 0\nstrategies = a,b,c\nspeeds = low\n", 3, 6);
   check_latin("[study]\norder = latin\ntraining = 0\nstrategies = a,b,c,d,e\nspeeds = low,high,0.3\n", 15, 30);
 }
-END_TEST
 
 /* Each cell once, another order for most people, training before a speed's first cell. */
-START_TEST(test_random_order) {
+TEST(test_random_order) {
   char first[512];
   int others = 0;
   read("[study]\norder = random\nstrategies = a,b,c\n");
@@ -176,12 +169,11 @@ START_TEST(test_random_order) {
   ck_assert_int_gt(others, 35);
   ethd__protocol_free(&protocol);
 }
-END_TEST
 
 /* ---- people ---- */
 
 /* What lies between and within people makes up what the plant says; radii are a person's. */
-START_TEST(test_people) {
+TEST(test_people) {
   ethd_plant plant;
   ck_assert_msg(!ethd_plant_load("apps/config/n.plant", &plant, message), "%s", message);
   enum { PEOPLE = 4000 };
@@ -204,9 +196,8 @@ START_TEST(test_people) {
   ck_assert_double_eq(none.hand_stiffness, plant.hand_stiffness);
   ck_assert(ethd__person_seed(7, 1) != ethd__person_seed(7, 2) && ethd__person_seed(7, 1) != ethd__person_seed(8, 1));
 }
-END_TEST
 
-START_TEST(test_ids) {
+TEST(test_ids) {
   char id[ETHD_STUDY_ID_MAX];
   protocol = (ethd__protocol){.participants = 3};
   ethd__participant_id(&protocol, 2, id);
@@ -215,7 +206,6 @@ START_TEST(test_ids) {
   ethd__participant_id(&protocol, 2, id);
   ck_assert_str_eq(id, "P00003");
 }
-END_TEST
 
 /* ---- sums: FIPS 180-4's examples ---- */
 
@@ -228,30 +218,10 @@ static void sum_is(const char *text, size_t times, const char *expected) {
   ck_assert_str_eq(sum, expected);
 }
 
-START_TEST(test_sha256) {
+TEST(test_sha256) {
   sum_is("", 1, "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   sum_is("abc", 1, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   sum_is("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq", 1,
          "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
   sum_is("a", 1000000, "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("study");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 120);
-  tcase_add_test(all, test_an_empty_file_is_a_study);
-  tcase_add_test(all, test_every_key);
-  tcase_add_test(all, test_attempts_follow_the_taps_that_are_wanted);
-  tcase_add_test(all, test_a_grid_has_an_end);
-  tcase_add_test(all, test_mutations);
-  tcase_add_test(all, test_the_papers_order);
-  tcase_add_test(all, test_latin_squares);
-  tcase_add_test(all, test_random_order);
-  tcase_add_test(all, test_people);
-  tcase_add_test(all, test_ids);
-  tcase_add_test(all, test_sha256);
-  suite_add_tcase(suite, all);
-  return rig_run(suite);
 }
