@@ -54,12 +54,14 @@ static bool has_empty_word(const char *words) {
   }
 }
 
+static bool is_whole(const ethd_param *row) { return ethd_param_words(row) || same(row->unit, ETHD_WHOLE); }
+
 static bool is_row(const ethd_param *row) {
   if (!ethd__is_line(row->unit, ETHD_BRIEF_MAX) || !ethd__is_line(row->brief, ETHD_BRIEF_MAX)) return false;
   if (!(isfinite(row->min) && islessequal(row->min, row->def) && islessequal(row->def, row->max))) return false;
   uint32_t words = ethd_param_words(row);
-  if (!words) return true;
-  return !has_empty_word(row->unit) && row->min == 0 && row->max == words - 1 && row->def == floor(row->def);
+  if (is_whole(row) && row->def != floor(row->def)) return false;
+  return !words || (!has_empty_word(row->unit) && row->min == 0 && row->max == words - 1);
 }
 
 ethd_status ethd_params_check_table(const ethd_param *params, uint32_t count, ethd_error *error) {
@@ -79,7 +81,7 @@ ethd_status ethd_params_check(const ethd_param *params, uint32_t count, const do
     const ethd_param *row = &params[i];
     double v = values[i];
     bool inside = isgreaterequal(v, row->min) && islessequal(v, row->max); /* quiet: NaN takes no trap */
-    bool whole = !ethd_param_words(row) || v == floor(v);
+    bool whole = !is_whole(row) || v == floor(v);
     if (inside && whole) continue;
     ethd_status status = isfinite(v) ? ETHD_E_RANGE : ETHD_E_NOT_FINITE;
     return ethd__refuse(error, status, row->name, (ethd__found){v, row->min, row->max});

@@ -298,8 +298,9 @@ def device_cases(ear):
         if "|" not in row["unit"]:
             low, high = float(row["min"]), float(row["max"])
             bad["out of range"] = [repr(low - 1 - abs(low))] + ([repr(2 * high + 1)] if high < 1e300 else [])
-        if "whole" in row["brief"]:
+        if row["unit"] == "whole":
             bad["not whole"] = [repr(float(row["min"]) + 0.5)]
+            bad["not a number"][-1] = "0x"
         for kind, values in bad.items():
             for value in values:
                 if kind == "overflow" and row["max"] == "inf" and value != "1e999":
@@ -463,15 +464,15 @@ def sweep_objects(ear):
 # How many of each there must be. A new key of a map, a new setting or a new driver changes its line: look at what is new.
 EXPECTED = """
 [device]     13  drivers
-[device]     71  key doubled
-[device]     71  key empty
+[device]     72  key doubled
+[device]     72  key empty
 [device]      9  key unknown
 [device]      4  keys without an owner
 [device]     13  lines
-[device]    284  not a number
+[device]    288  not a number
 [device]      7  not whole
-[device]    128  out of range
-[device]    140  overflow
+[device]    118  out of range
+[device]    142  overflow
 [device]      1  section doubled
 answers       8  another function
 answers      16  another number

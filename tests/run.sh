@@ -47,7 +47,7 @@ sed "s|$folder/v2|$folder/v1|" "$folder/v2.out" | cmp - "$folder/v1.out" || fail
 diff -r "$folder/v1" "$folder/v2" || fail "two virtual runs leave different recordings"
 says "$folder/v1.out" '^ok: t 0.001 s, enabled, offset, transparent' '^ok: transition smooth$' '^ok: set contact.k_e 2000$' \
   '^error: there is no fault to acknowledge$' '^error: the device is enabled$' '^error: found "bogus"' \
-  '^error: contact.k_e: found -1, ' '^error: set SECTION.KEY VALUE$' '^error: .*nowhere' \
+  '^error: contact.k_e: found "-1", ' '^error: set SECTION.KEY VALUE$' '^error: .*nowhere' \
   '^error: a fault is latched: the ring is faster' '^ok: acknowledged; the device is disabled' '^ok: enabled$' \
   '^ok: t .* enabled, abrupt, .* no fault$' '^ok: stopping$' '^faults  *1 x the ring is faster than its limit$' 'virtual'
 says "$folder/v1/events.csv" ',transition,smooth$' ',set,contact.k_e 2000$' ',clear,' ',start,enabled$' ',fault,' ',set,limits.speed 0$'

@@ -57,9 +57,9 @@ printf '[device]\nplant = b\n' >"$folder/b.ini"
 "$tap" --config "$folder/empty.ini" --plant b --taps 2 --transition offset --csv "$folder/s.csv" >/dev/null
 cmp -s "$folder/e.csv" "$folder/s.csv" || fail "plant = b isn't --plant b"
 "$tap" --config "$folder/b.ini" --plant n --taps 2 --transition offset --csv "$folder/s.csv" | grep -q 'Plant n, ' || fail "--plant goes first"
-printf '[device]\nplant = b\nreading = rays\n' >"$folder/rays.ini"
+printf '[device]\nplant = b\nfinger = rays\n' >"$folder/rays.ini"
 "$tap" --config "$folder/rays.ini" --taps 2 --transition offset --csv "$folder/s.csv" >/dev/null
-cmp -s "$folder/e.csv" "$folder/s.csv" && fail "reading = rays changes nothing"
+cmp -s "$folder/e.csv" "$folder/s.csv" && fail "finger = rays changes nothing"
 
 # Traces of typical taps.
 "$tap" --taps 3 --transition smooth,offset --speed 0.3 --trace "$folder/traces" >/dev/null
@@ -153,7 +153,7 @@ printf '[scene]\nfile = far.scene\n' >"$folder/far.ini"
 printf '[device]\ndriver = servo\n' >"$folder/far.ini"
 refuse 'far.ini:2: device.driver: found "servo", sim is allowed' --config "$folder/far.ini"
 printf '[device]\nplnt = n\n' >"$folder/far.ini"
-refuse 'far.ini:2: plnt: an unknown name' --config "$folder/far.ini"
+refuse 'far.ini:2: device.plnt: sim knows plant, ' --config "$folder/far.ini"
 printf '[device]\nplant = none\n' >"$folder/far.ini"
 refuse 'none.plant: No such file' --config "$folder/far.ini"
 printf '[scene]\nfile = far.scene\n' >"$folder/far.ini"

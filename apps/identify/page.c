@@ -28,25 +28,25 @@ void ethd__finding_plant(ethd__finding *f) {
 
 /* ---- what is known of a row ---- */
 
-static int unknown_of(const ethd__plant_row *row) {
+static int unknown_of(const ethd__key_row *row) {
   for (int u = 0; u < ETHD__UNKNOWNS; u++)
     if (ethd__unknown_rows[u].offset == row->offset) return u;
   return -1;
 }
 
-static const ethd__bracket *bracket_of(const ethd__finding *f, const ethd__plant_row *row) {
+static const ethd__bracket *bracket_of(const ethd__finding *f, const ethd__key_row *row) {
   if (!strcmp(row->section, "proximity") && !strcmp(row->param.name, "rate")) return &f->sensing.rate;
   if (!strcmp(row->section, "proximity") && !strcmp(row->param.name, "latency")) return &f->sensing.latency;
   if (!strcmp(row->section, "proximity") && !strcmp(row->param.name, "noise")) return &f->sensing.noise;
   return NULL;
 }
 
-static bool is_count(const ethd__plant_row *row) {
+static bool is_count(const ethd__key_row *row) {
   return !strcmp(row->param.name, "count") || !strcmp(row->param.name, "count_phase");
 }
 
 /* Fills the words that follow a number in the file and on the page. */
-static void tell(const ethd__finding *f, const ethd__plant_row *row, char *out, size_t room) {
+static void tell(const ethd__finding *f, const ethd__key_row *row, char *out, size_t room) {
   int u = unknown_of(row);
   const ethd__bracket *b = bracket_of(f, row);
   const char *unit = row->param.unit;
@@ -69,7 +69,7 @@ static void tell(const ethd__finding *f, const ethd__plant_row *row, char *out, 
 
 /* ---- for people ---- */
 
-static void print_row(FILE *out, const ethd__finding *f, const ethd__plant_row *row) {
+static void print_row(FILE *out, const ethd__finding *f, const ethd__key_row *row) {
   char what[192];
   const char *skip;
   tell(f, row, what, sizeof what);
@@ -80,7 +80,7 @@ static void print_row(FILE *out, const ethd__finding *f, const ethd__plant_row *
           skip);
 }
 
-static bool is_kept(const ethd__finding *f, const ethd__plant_row *row) {
+static bool is_kept(const ethd__finding *f, const ethd__key_row *row) {
   int u = unknown_of(row);
   const ethd__bracket *b = bracket_of(f, row);
   return u < 0 && !is_count(row) && !(b && !isnan(b->value));
@@ -90,7 +90,7 @@ static void print_kept(FILE *out, const ethd__finding *f) {
   const char *section = "";
   fprintf(out, "\nnot seen, kept as in %s:", f->base);
   for (size_t i = 0; i < ethd__plant_row_count; i++) {
-    const ethd__plant_row *row = &ethd__plant_rows[i];
+    const ethd__key_row *row = &ethd__plant_rows[i];
     if (!is_kept(f, row)) continue;
     fprintf(out, strcmp(section, row->section) ? "\n  %-13s %s" : ", %.0s%s", row->section, row->param.name);
     section = row->section;
@@ -145,7 +145,7 @@ void ethd__page_print(FILE *out, const ethd__finding *f) {
 
 /* ---- the file ---- */
 
-static void write_row(FILE *out, const ethd__finding *f, const ethd__plant_row *row) {
+static void write_row(FILE *out, const ethd__finding *f, const ethd__key_row *row) {
   const char *at = (const char *)&f->plant + row->offset;
   char what[192], number[40];
   int32_t word;
@@ -177,7 +177,7 @@ ethd_status ethd__page_write(const ethd__finding *f, const char *path, char mess
   fprintf(replace.file, "# Residual %.4g rad rms; %s.\n", f->whiteness.rms,
           f->whiteness.explained ? "the model explains it" : "NOT EXPLAINED by this model");
   for (size_t i = 0; i < ethd__plant_row_count; i++) {
-    const ethd__plant_row *row = &ethd__plant_rows[i];
+    const ethd__key_row *row = &ethd__plant_rows[i];
     if (strcmp(section, row->section)) fprintf(replace.file, "%s[%s]\n", i ? "\n" : "", row->section);
     section = row->section;
     write_row(replace.file, f, row);

@@ -15,12 +15,9 @@ static ethd_status check_driver(const ethd_config *config, char *message) {
 }
 
 ethd_status ethd__device_read(const ethd_config *config, ethd__sim_settings *out, char message[ETHD_MESSAGE_MAX]) {
-  ethd_error error;
   const ethd_device_def def = {&config->setup, config->settings, config->setting_count,
                                config->folder, config->path,     1};
   ethd_status status = check_driver(config, message);
   if (status) return status;
-  status = ethd__sim_settings_read(&def, out, &error);
-  if (status) ethd_error_text(config->path, &error, message);
-  return status;
+  return status ? status : ethd__sim_settings_read(&def, out, message);
 }

@@ -39,7 +39,7 @@ static char *beside_plant(const char *plant, const char *suffix) {
 
 static void load_plant(const char *plant, bool simulated, ethd__loaded *out) {
   char message[ETHD_MESSAGE_MAX];
-  ethd__sim_settings device = {.reading = -1};
+  ethd__sim_settings device = {.plant = NULL};
   if (simulated) check(ethd__device_read(out->config, &device, message), message);
   if (plant) {
     out->plant_path = beside_plant(plant, ".plant");
@@ -49,7 +49,7 @@ static void load_plant(const char *plant, bool simulated, ethd__loaded *out) {
   }
   out->plant_name = had(strdup(plant));
   check(ethd_plant_load(out->plant_path, &out->plant, message), message);
-  ethd__sim_settings_finger(&device, &out->plant);
+  if (simulated) ethd__sim_settings_finger(&device, &out->plant);
 }
 
 /* A configuration without a scene gets the paper's wall, as if it named it. */

@@ -116,7 +116,7 @@ static ethd__encoder_def define(const ethd__counter_settings *s, int j, uint64_t
                              .reverse_torque = p[ETHD__COUNTER_REVERSE_TORQUE],
                              .reverse_time = p[ETHD__COUNTER_REVERSE_TIME],
                              .inertia = p[ETHD__COUNTER_INERTIA],
-                             .sign = (int32_t)p[ETHD__COUNTER_SIGN1 + j],
+                             .sign = p[ETHD__COUNTER_SIGN1 + j] > 0 ? -1 : 1,
                              .home = p[ETHD__COUNTER_HOME] != 0,
                              .stamps = p[ETHD__COUNTER_STAMPS] != 0};
 }

@@ -2,7 +2,6 @@
    It uses one count of a frame, with that sensor's calibration. */
 #include <stdlib.h>
 
-#include "device/settings.h"
 #include "ethd/maths.h"
 #include "finger/bus.h"
 #include "finger/nail.h"
@@ -16,7 +15,7 @@ enum { PORT, CALIBRATION, KEYS };
 
 static const ethd_param params[PARAMS] = {
     ETHD__BUS_ROWS,
-    [SENSOR] = {"sensor", "1", 0, ETHD__FRAME_SENSORS - 1, 0, "which of a frame's counts, whole"},
+    [SENSOR] = {"sensor", ETHD_WHOLE, 0, ETHD__FRAME_SENSORS - 1, 0, "which of a frame's counts"},
     [ANGLE] = {"angle", "rad", -7, 7, 0, "in R_0, from the ring's centre toward the sensor"},
     [REST] = {"rest", "m", 0, 0.1, 5e-3, "distance of the plate when the finger is centred"},
     [RANGE] = {"range", "m", 1e-4, 0.1, 10e-3, "what is further is no plate"},
@@ -57,11 +56,10 @@ static ethd_status load(const ethd_device_def *def, const ethd_setting *file, na
                    def->file ? def->file : "", file->line, file->key, file->value, n->index);
 }
 
-static ethd_status check(const ethd_device_def *def, const ethd_setting *texts[KEYS], const double *p, char *message) {
+static ethd_status check(const ethd_device_def *def, const ethd_setting *texts[KEYS], char *message) {
   const char *what = !texts[PORT]          ? "port is missing: the sensor's line, as /dev/ttyUSB0"
                      : !texts[CALIBRATION] ? "calibration is missing: what its counts mean"
                                            : NULL;
-  if (p[SENSOR] != (uint32_t)p[SENSOR]) return ethd__setting_refuse(def, "sensor", "a whole number", message);
   if (!what) return ETHD_OK;
   return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.%s", def->file ? def->file : "the defaults", what);
 }
@@ -72,7 +70,7 @@ static ethd_status nail_prepare(const ethd_device_def *def, void **device, char 
   *device = NULL;
   ethd_params_default(params, PARAMS, p);
   ethd_status status = ethd_settings_read(&ethd_driver_nail, def, p, texts, message);
-  if (!status) status = check(def, texts, p, message);
+  if (!status) status = check(def, texts, message);
   if (status) return status;
   nail_plate *n = calloc(1, sizeof *n);
   if (!n) return ETHD_E_MEMORY;

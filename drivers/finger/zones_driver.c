@@ -2,7 +2,6 @@
    lit if its count reaches `level`. */
 #include <stdlib.h>
 
-#include "device/settings.h"
 #include "finger/bus.h"
 #include "finger/zones.h"
 #include "no_joints.h"
@@ -12,7 +11,7 @@ enum { ZONES = ETHD__BUS_PARAMS, REACH, SWITCHING, LEVEL, PARAMS };
 
 static const ethd_param params[PARAMS] = {
     ETHD__BUS_ROWS,
-    [ZONES] = {"zones", "1", ETHD__ZONES_MIN, ETHD__ZONES_MAX, 12, "light barriers, at counts 0 and up; whole"},
+    [ZONES] = {"zones", ETHD_WHOLE, ETHD__ZONES_MIN, ETHD__ZONES_MAX, 12, "light barriers, at counts 0 and up"},
     [REACH] = {"reach", "m", 1e-4, 0.1, 3.5e-3, "a barrier is lit while the finger is nearer to it"},
     [SWITCHING] = {"switching", "m", 0, 0.01, 0.1e-3, "sd of the distance at which it switches"},
     [LEVEL] = {"level", "1", 1, 65535, 32768, "counts of a barrier that is lit, at least"},
@@ -44,7 +43,6 @@ static ethd_status zones_prepare(const ethd_device_def *def, void **device, char
   ethd_params_default(params, PARAMS, p);
   ethd_status status = ethd_settings_read(&ethd_driver_zones, def, p, &port, message);
   if (status) return status;
-  if (p[ZONES] != (uint32_t)p[ZONES]) return ethd__setting_refuse(def, "zones", "a whole number", message);
   if (!port)
     return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.port is missing: the barriers' line, as /dev/ttyUSB0",
                      def->file ? def->file : "the defaults");

@@ -50,7 +50,7 @@ static ethd_status unknown(const calibration_source *r, const ethd_ini_key *k, c
 
 static ethd_status number(const calibration_source *r, const ethd_ini_key *k, const ethd_param *row, double *out) {
   const ethd__key key = ethd__key_of(r->name, k, r->message);
-  return ethd__key_value(&key, row, false, out);
+  return ethd__key_value(&key, row, out);
 }
 
 static ethd_status word(const calibration_source *r, const ethd_ini_key *k, char out[ETHD__SERIAL_MAX]) {

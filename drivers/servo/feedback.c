@@ -35,7 +35,7 @@ ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo
                                          .reverse_torque = given_or(r->reverse_torque, ETHD__SERVO_REVERSE * most),
                                          .reverse_time = r->reverse_time,
                                          .inertia = r->inertia,
-                                         .sign = (int32_t)r->sign};
+                                         .sign = r->reversed ? -1 : 1};
     status = ethd__encoder_check(&f->axes[i].def, period, error);
   }
   return status;

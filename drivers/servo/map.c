@@ -25,7 +25,7 @@ static int section_line(const ethd_ini *ini, const char *name) {
   return 0;
 }
 
-static ethd_status check_sections(const ethd__servo_source *s) {
+static ethd_status check_sections(const ethd__key_file *s) {
   char quote[ETHD_QUOTE_MAX];
   for (uint32_t i = 0; i < s->ini->section_count; i++) {
     const ethd_ini_section *section = &s->ini->sections[i];
@@ -43,8 +43,7 @@ static ethd_status check_sections(const ethd__servo_source *s) {
 
 /* ---- registers ---- */
 
-static ethd_status name_register(const ethd__servo_source *s, const ethd_ini_section *section,
-                                 ethd__servo_register *out) {
+static ethd_status name_register(const ethd__key_file *s, const ethd_ini_section *section, ethd__servo_register *out) {
   const char *name = section->name + sizeof register_prefix - 1;
   size_t length = strlen(name);
   char quote[ETHD_QUOTE_MAX];
@@ -59,7 +58,7 @@ static ethd_status name_register(const ethd__servo_source *s, const ethd_ini_sec
   return ETHD_OK;
 }
 
-static ethd_status read_registers(const ethd__servo_source *s, ethd__servo_map *map) {
+static ethd_status read_registers(const ethd__key_file *s, ethd__servo_map *map) {
   for (uint32_t i = 0; i < s->ini->section_count; i++) {
     const ethd_ini_section *section = &s->ini->sections[i];
     if (!is_register(section->name)) continue;
@@ -92,7 +91,7 @@ static bool says_unconfirmed(const char *text, size_t length, int line) {
   return remark && memmem(remark, (size_t)(text + n - remark), word, sizeof word - 1);
 }
 
-static void mark_unconfirmed(const ethd__servo_source *s, const char *text, size_t length, ethd__servo_map *map) {
+static void mark_unconfirmed(const ethd__key_file *s, const char *text, size_t length, ethd__servo_map *map) {
   char section[ETHD__SERVO_NAME_MAX + 16];
   for (uint32_t i = 0; i < map->count; i++) {
     snprintf(section, sizeof section, "%s%s", register_prefix, map->registers[i].name);
@@ -103,7 +102,7 @@ static void mark_unconfirmed(const ethd__servo_source *s, const char *text, size
 
 /* ---- the whole ---- */
 
-static ethd_status fill(const ethd__servo_source *s, ethd__servo_map *map) {
+static ethd_status fill(const ethd__key_file *s, ethd__servo_map *map) {
   memset(map, 0, sizeof *map);
   for (int i = 0; i < ETHD__SERVO_ROLES; i++) map->roles[i] = -1;
   ethd_status status = check_sections(s);
@@ -122,7 +121,7 @@ ethd_status ethd__servo_map_parse(const char *text, size_t length, const char *n
   ethd_ini ini;
   ethd_status status = ethd_ini_parse(text, length, name, NULL, NULL, &ini, message);
   if (status) return status;
-  const ethd__servo_source source = {&ini, name, message};
+  const ethd__key_file source = {&ini, name, message};
   status = fill(&source, out);
   if (!status) mark_unconfirmed(&source, text, length, out);
   ethd_ini_free(&ini);

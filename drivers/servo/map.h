@@ -92,11 +92,11 @@ extern const ethd__servo_role ethd__servo_roles[ETHD__SERVO_ROLES];
 /* What a [register] says. Masks and addresses are whole numbers. */
 typedef struct ethd__servo_register {
   char name[ETHD__SERVO_NAME_MAX];
-  int32_t line, role; /* role -1: none */
-  int32_t direction, space, type, order, unit;
-  uint32_t bus_unit; /* the unit that has it */
-  uint32_t address;  /* as on the wire, from 0 */
-  double scale, offset, min, max, ratio, sign;
+  int32_t line, role;                                    /* role -1: none */
+  int32_t direction, space, type, order, unit, reversed; /* reversed: 1 where sign is -1 */
+  uint32_t bus_unit;                                     /* the unit that has it */
+  uint32_t address;                                      /* as on the wire, from 0 */
+  double scale, offset, min, max, ratio;
   double counts, torque_constant;    /* per motor turn; Nm/A */
   uint32_t bits;                     /* width of a position's counter */
   double speed_max;                  /* rad/s of the joint: a counter that is faster jumped */
@@ -136,8 +136,7 @@ typedef struct ethd__servo_map {
   int32_t crc, local_echo; /* of rtu: order of the checksum's bytes; 1: what is sent comes back first */
   int32_t rs485;           /* who switches its direction: 0 the adapter, 1 RTS high while sending, 2 RTS low */
   char port[ETHD__SERVO_PORT_MAX];
-  double baud;
-  uint32_t unit, base, divisor, gap;
+  uint32_t baud, unit, base, divisor, gap;
   double turnaround; /* s: from the end of a question to the begin of its answer; 0: not known */
   double connect, response, drain, silence, back_off; /* s */
   int32_t watchdog, resumes;

@@ -14,10 +14,10 @@
 #define ZERO 1e-9 /* of the largest torque: less counts as none */
 
 /* Refuses at the line of a register's key, or of its section when it doesn't have that key. */
-static ethd_status refuse(const ethd__servo_source *s, const ethd__servo_register *r, const char *name,
-                          const char *format, ...) __attribute__((format(printf, 4, 5)));
-static ethd_status refuse(const ethd__servo_source *s, const ethd__servo_register *r, const char *name,
-                          const char *format, ...) {
+static ethd_status refuse(const ethd__key_file *s, const ethd__servo_register *r, const char *name, const char *format,
+                          ...) __attribute__((format(printf, 4, 5)));
+static ethd_status refuse(const ethd__key_file *s, const ethd__servo_register *r, const char *name, const char *format,
+                          ...) {
   char section[ETHD__SERVO_NAME_MAX + 16], text[256];
   va_list args;
   va_start(args, format);
@@ -29,7 +29,7 @@ static ethd_status refuse(const ethd__servo_source *s, const ethd__servo_registe
                    text);
 }
 
-static bool has(const ethd__servo_source *s, const ethd__servo_register *r, const char *key) {
+static bool has(const ethd__key_file *s, const ethd__servo_register *r, const char *key) {
   char section[ETHD__SERVO_NAME_MAX + 16];
   snprintf(section, sizeof section, "register %s", r->name);
   return ethd_ini_find(s->ini, section, key) != NULL;
@@ -47,7 +47,7 @@ static bool unit_is(const ethd__servo_register *r, const char *words) {
 
 /* ---- one register ---- */
 
-static ethd_status check_unit(const ethd__servo_source *s, const ethd__servo_register *r) {
+static ethd_status check_unit(const ethd__key_file *s, const ethd__servo_register *r) {
   if (unit_is(r, "A") && !(r->torque_constant > 0))
     return refuse(s, r, "torque_constant", "is missing: unit = A needs it");
   if (unit_is(r, "count|count/s") && !(r->counts > 0)) return refuse(s, r, "counts", "is missing: counts a motor turn");
@@ -65,7 +65,7 @@ static bool is_counter(const ethd__servo_register *r) {
   return r->role == ETHD__SERVO_COUNTER || r->role == ETHD__SERVO_COUNTER2;
 }
 
-static ethd_status check_words(const ethd__servo_source *s, const ethd__servo_register *r) {
+static ethd_status check_words(const ethd__key_file *s, const ethd__servo_register *r) {
   if (r->type >= ETHD__SERVO_U32 && r->order == ETHD__SERVO_NO_ORDER)
     return refuse(s, r, "order", "is missing: high-first or low-first, as two words need it");
   if (r->direction == W && r->space == ETHD__SERVO_INPUT)
@@ -79,7 +79,7 @@ static ethd_status check_words(const ethd__servo_source *s, const ethd__servo_re
   return ETHD_OK;
 }
 
-static ethd_status check_masks(const ethd__servo_source *s, const ethd__servo_register *r) {
+static ethd_status check_masks(const ethd__key_file *s, const ethd__servo_register *r) {
   uint32_t most = ethd__servo_words(r) == 2 ? UINT32_MAX : UINT16_MAX;
   if (!(r->fault_mask | r->enabled_mask)) return ETHD_OK;
   const char *key = r->fault_mask ? "fault_mask" : "enabled_mask";
@@ -91,7 +91,7 @@ static ethd_status check_masks(const ethd__servo_source *s, const ethd__servo_re
   return ETHD_OK;
 }
 
-static ethd_status check_torque(const ethd__servo_source *s, const ethd__servo_register *r) {
+static ethd_status check_torque(const ethd__key_file *s, const ethd__servo_register *r) {
   double least, most, low = (r->min - r->offset) / r->scale, high = (r->max - r->offset) / r->scale;
   if (!has(s, r, "min") || !has(s, r, "max"))
     return refuse(s, r, has(s, r, "min") ? "max" : "min", "is missing: a command needs its limits");
@@ -105,7 +105,7 @@ static ethd_status check_torque(const ethd__servo_source *s, const ethd__servo_r
   return ETHD_OK;
 }
 
-static ethd_status check_register(const ethd__servo_source *s, const ethd__servo_register *r) {
+static ethd_status check_register(const ethd__key_file *s, const ethd__servo_register *r) {
   ethd_status status = check_words(s, r);
   if (!status) status = check_unit(s, r);
   if (!status) status = check_masks(s, r);
@@ -124,7 +124,7 @@ static ethd_status check_register(const ethd__servo_source *s, const ethd__servo
 
 /* ---- echoes, overlaps, use ---- */
 
-static ethd_status link_echo(const ethd__servo_source *s, ethd__servo_map *map, ethd__servo_register *r) {
+static ethd_status link_echo(const ethd__key_file *s, ethd__servo_map *map, ethd__servo_register *r) {
   char section[ETHD__SERVO_NAME_MAX + 16];
   snprintf(section, sizeof section, "register %s", r->name);
   const ethd_ini_key *key = ethd_ini_find(s->ini, section, "echo");
@@ -149,7 +149,7 @@ static bool same_words(const ethd__servo_register *a, const ethd__servo_register
   return a->address == b->address && a->type == b->type && (a->order == b->order || ethd__servo_words(a) == 1);
 }
 
-static ethd_status check_overlaps(const ethd__servo_source *s, const ethd__servo_map *map) {
+static ethd_status check_overlaps(const ethd__key_file *s, const ethd__servo_map *map) {
   for (uint32_t i = 0; i < map->count; i++)
     for (uint32_t j = 0; j < i; j++) {
       const ethd__servo_register *a = &map->registers[i], *b = &map->registers[j];
@@ -177,7 +177,7 @@ static bool is_echo(const ethd__servo_map *map, int32_t i) {
 }
 
 /* The loop needs these values in every exchange. */
-static ethd_status check_every(const ethd__servo_source *s, const ethd__servo_map *map) {
+static ethd_status check_every(const ethd__key_file *s, const ethd__servo_map *map) {
   for (uint32_t i = 0; i < map->count; i++) {
     const ethd__servo_register *r = &map->registers[i];
     bool may = r->role < 0 || r->role == ETHD__SERVO_MEASURED1 || r->role == ETHD__SERVO_MEASURED2 ||
@@ -189,7 +189,7 @@ static ethd_status check_every(const ethd__servo_source *s, const ethd__servo_ma
   return ETHD_OK;
 }
 
-static ethd_status check_use(const ethd__servo_source *s, ethd__servo_map *map) {
+static ethd_status check_use(const ethd__key_file *s, ethd__servo_map *map) {
   for (uint32_t i = 0; i < map->count; i++) {
     ethd__servo_register *r = &map->registers[i];
     r->cyclic |= r->role >= 0 || r->fault_mask || r->enabled_mask;
@@ -216,7 +216,7 @@ static bool same_unit(const ethd__servo_map *map) {
 /* Read in every exchange. */
 static bool is_measured(const ethd__servo_register *r) { return r->cyclic && r->direction == R && r->every == 1; }
 
-static ethd_status check_roles(const ethd__servo_source *s, const ethd__servo_map *map) {
+static ethd_status check_roles(const ethd__key_file *s, const ethd__servo_map *map) {
   const int32_t *roles = map->roles;
   const char *wrong = NULL;
   if (roles[ETHD__SERVO_TORQUE1] < 0 && roles[ETHD__SERVO_TORQUE2] < 0) wrong = "a torque1 or a torque2 is missing";
@@ -243,7 +243,7 @@ static ethd_status check_roles(const ethd__servo_source *s, const ethd__servo_ma
   return wrong ? ethd__say(s->message, ETHD_E_UNKNOWN, "%s: %s", s->name, wrong) : ETHD_OK;
 }
 
-ethd_status ethd__servo_map_check(const ethd__servo_source *s, ethd__servo_map *map) {
+ethd_status ethd__servo_map_check(const ethd__key_file *s, ethd__servo_map *map) {
   ethd_status status = ETHD_OK;
   for (uint32_t i = 0; i < map->count && !status; i++) status = check_register(s, &map->registers[i]);
   for (uint32_t i = 0; i < map->count && !status; i++) status = link_echo(s, map, &map->registers[i]);

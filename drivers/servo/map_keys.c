@@ -9,179 +9,106 @@
 #include "text/key.h"
 #include "text/text.h"
 
-typedef enum { NUMBER, WHOLE, CHOICE } key_kind;
-
-typedef struct map_key {
-  key_kind kind;
-  ethd_param param; /* def NaN: the key must be given; the unit of a CHOICE holds its words */
-  size_t offset;
-} map_key;
-
 const char ethd__servo_formats[] = "8N1|8E1|8O1|8N2";
 
 #define AT(type, field) offsetof(ethd__servo_##type, field)
 #define OPEN_LIMIT 1e12
 #define WORD_MAX 4294967295.0
 
-static const map_key bus[] = {
-    {CHOICE, {"transport", "tcp|rtu", 0, 1, (double)NAN, "Modbus/TCP, or RTU on a serial line"}, AT(map, transport)},
-    {CHOICE, {"format", ethd__servo_formats, 0, 3, 0, "of a serial byte"}, AT(map, format)},
-    {NUMBER, {"baud", "1/s", 1200, 12e6, 0, "of a serial line, any"}, AT(map, baud)},
-    {WHOLE, {"unit", "1", 0, 255, 1, "station"}, AT(map, unit)},
-    {WHOLE, {"base", "1", 0, 1, 0, "what the manual calls the first register"}, AT(map, base)},
-    {WHOLE, {"divisor", "1", 1, 1000, 1, "ticks of the loop an exchange"}, AT(map, divisor)},
-    {WHOLE, {"gap", "1", 0, 32, 0, "unnamed registers that a read may span"}, AT(map, gap)},
-    {CHOICE,
-     {"addressing", "words|values", 0, 1, 0, "what an address counts; values: each is asked for alone"},
-     AT(map, addressing)},
-    {CHOICE,
-     {"crc", "low-first|high-first", 0, 1, 0, "of an rtu frame's two bytes of checksum; low-first is the standard"},
-     AT(map, crc)},
-    {CHOICE,
-     {"rs485", "adapter|rts|rts-low", 0, 2, 0,
+static const ethd__key_row bus[] = {
+    {{"transport", "tcp|rtu", 0, 1, (double)NAN, "Modbus/TCP, or RTU on a serial line"}, AT(map, transport), NULL},
+    {{"format", ethd__servo_formats, 0, 3, 0, "of a serial byte"}, AT(map, format), NULL},
+    {{"baud", ETHD_WHOLE, 1200, 12e6, 0, "1/s of a serial line, any"}, AT(map, baud), NULL},
+    {{"unit", ETHD_WHOLE, 0, 255, 1, "station"}, AT(map, unit), NULL},
+    {{"base", ETHD_WHOLE, 0, 1, 0, "what the manual calls the first register"}, AT(map, base), NULL},
+    {{"divisor", ETHD_WHOLE, 1, 1000, 1, "ticks of the loop an exchange"}, AT(map, divisor), NULL},
+    {{"gap", ETHD_WHOLE, 0, 32, 0, "unnamed registers that a read may span"}, AT(map, gap), NULL},
+    {{"addressing", "words|values", 0, 1, 0, "what an address counts; values: each is asked for alone"},
+     AT(map, addressing),
+     NULL},
+    {{"crc", "low-first|high-first", 0, 1, 0, "of an rtu frame's two bytes of checksum; low-first is the standard"},
+     AT(map, crc),
+     NULL},
+    {{"rs485", "adapter|rts|rts-low", 0, 2, 0,
       "rtu: what switches the direction of a two-wire line: the adapter, or RTS, high or low while sending"},
-     AT(map, rs485)},
-    {CHOICE,
-     {"local_echo", "no|yes", 0, 1, 0, "rtu: what is sent comes back, as on a two-wire line with an open receiver"},
-     AT(map, local_echo)},
-    {CHOICE, {"exchange", "separate|combined", 0, 1, 0, "16 then 3, or 0x17"}, AT(map, exchange)},
-    {NUMBER, {"connect", "s", 1e-3, 60, 1, "time to connect"}, AT(map, connect)},
-    {NUMBER, {"response", "s", 1e-4, 10, 0.02, "time for an answer"}, AT(map, response)},
-    {NUMBER, {"drain", "s", 1e-4, 10, 2e-3, "quiet time that ends an error"}, AT(map, drain)},
-    {NUMBER, {"silence", "s", 0, 1, -1, "before a request; rtu: 3.5 bytes by default"}, AT(map, silence)},
-    {NUMBER,
-     {"turnaround", "s", 0, 1, 0,
+     AT(map, rs485),
+     NULL},
+    {{"local_echo", "no|yes", 0, 1, 0, "rtu: what is sent comes back, as on a two-wire line with an open receiver"},
+     AT(map, local_echo),
+     NULL},
+    {{"exchange", "separate|combined", 0, 1, 0, "16 then 3, or 0x17"}, AT(map, exchange), NULL},
+    {{"connect", "s", 1e-3, 60, 1, "time to connect"}, AT(map, connect), NULL},
+    {{"response", "s", 1e-4, 10, 0.02, "time for an answer"}, AT(map, response), NULL},
+    {{"drain", "s", 1e-4, 10, 2e-3, "quiet time that ends an error"}, AT(map, drain), NULL},
+    {{"silence", "s", 0, 1, -1, "before a request; rtu: 3.5 bytes by default"}, AT(map, silence), NULL},
+    {{"turnaround", "s", 0, 1, 0,
       "rtu: from the end of a question to the begin of its answer, as the probe measures it"},
-     AT(map, turnaround)},
-    {NUMBER,
-     {"back_off", "s", 1e-3, 60, 0.05, "between attempts to connect, doubled up to 32 times"},
-     AT(map, back_off)},
+     AT(map, turnaround),
+     NULL},
+    {{"back_off", "s", 1e-3, 60, 0.05, "between attempts to connect, doubled up to 32 times"}, AT(map, back_off), NULL},
 };
 
-static const map_key watchdog[] = {
-    {CHOICE, {"kind", "none|silence|counter", 0, 2, 0, "what stops the drive without us"}, AT(map, watchdog)},
-    {NUMBER, {"time", "s", 1e-3, 60, 0, "after which it stops"}, AT(map, watchdog_time)},
-    {CHOICE,
-     {"guardian", "auto|no|yes", 0, 2, 0,
+static const ethd__key_row watchdog[] = {
+    {{"kind", "none|silence|counter", 0, 2, 0, "what stops the drive without us"}, AT(map, watchdog), NULL},
+    {{"time", "s", 1e-3, 60, 0, "after which it stops"}, AT(map, watchdog_time), NULL},
+    {{"guardian", "auto|no|yes", 0, 2, 0,
       "a process of ours that writes zero torque when we are silent: where kind = none"},
-     AT(map, guardian)},
-    {CHOICE, {"resumes", "no|yes", 0, 1, 0, "goes on by itself when the bus does"}, AT(map, resumes)},
+     AT(map, guardian),
+     NULL},
+    {{"resumes", "no|yes", 0, 1, 0, "goes on by itself when the bus does"}, AT(map, resumes), NULL},
 };
 
-static const map_key keys[] = {
-    {CHOICE, {"direction", "read|write", 0, 1, (double)NAN, "as the loop sees it"}, AT(register, direction)},
-    {WHOLE, {"address", "1", 0, 65536, (double)NAN, "as in the manual"}, AT(register, address)},
-    {WHOLE, {"bus_unit", "1", 0, 247, 0, "unit that has it; bus.unit by default"}, AT(register, bus_unit)},
-    {CHOICE, {"space", "holding|input", 0, 1, 0, "functions 3 and 16, or 4"}, AT(register, space)},
-    {CHOICE, {"type", "u16|i16|u32|i32|f32", 0, 4, (double)NAN, "of the words"}, AT(register, type)},
-    {CHOICE, {"order", "high-first|low-first", 0, 1, 2, "of two words"}, AT(register, order)},
-    {CHOICE, {"unit", ethd__servo_units, 0, 11, 0, "at the motor"}, AT(register, unit)},
-    {NUMBER, {"scale", "1", -1e9, 1e9, 1, "units a raw count"}, AT(register, scale)},
-    {NUMBER, {"offset", "1", -1e9, 1e9, 0, "units at raw 0"}, AT(register, offset)},
-    {NUMBER, {"min", "1", -OPEN_LIMIT, OPEN_LIMIT, -OPEN_LIMIT, "limit, in its unit"}, AT(register, min)},
-    {NUMBER, {"max", "1", -OPEN_LIMIT, OPEN_LIMIT, OPEN_LIMIT, "limit, in its unit"}, AT(register, max)},
-    {NUMBER, {"ratio", "1", 1e-3, 1e4, 1, "motor turns a joint turn"}, AT(register, ratio)},
-    {NUMBER, {"sign", "1", -1, 1, 1, "1 or -1: of the joint's turn"}, AT(register, sign)},
-    {NUMBER, {"counts", "1", 1, 1e9, 0, "a motor turn"}, AT(register, counts)},
-    {NUMBER, {"torque_constant", "Nm/A", 1e-6, 1e3, 0, "of the motor"}, AT(register, torque_constant)},
-    {WHOLE, {"bits", "1", 8, 32, 0, "width of a position's counter: the type's by default"}, AT(register, bits)},
-    {NUMBER,
-     {"speed_max", "rad/s", 0.01, 1e4, 40, "of a joint: a counter that is faster jumped"},
-     AT(register, speed_max)},
-    {NUMBER,
-     {"freeze_torque", "Nm", 1e-6, 1e6, 0, "a change that moves a sound joint, over twice its friction"},
-     AT(register, freeze_torque)},
-    {NUMBER, {"freeze_time", "s", 1e-3, 10, 0.05, "how long it may"}, AT(register, freeze_time)},
-    {NUMBER,
-     {"reverse_torque", "Nm", 1e-6, 1e6, 0, "against which a joint gains no speed, over its friction"},
-     AT(register, reverse_torque)},
-    {NUMBER, {"reverse_time", "s", 1e-3, 10, 0.02, "how long it may"}, AT(register, reverse_time)},
-    {NUMBER, {"inertia", "kg m^2", 1e-9, 1e6, 0.01, "of the joint, for the last two"}, AT(register, inertia)},
-    {CHOICE,
-     {"absolute", "no|yes", 0, 1, 0, "of a position: it means the same angle after the drive was without power"},
-     AT(register, absolute)},
-    {WHOLE,
-     {"every", "1", 1, ETHD__SERVO_EVERY_MAX, 1,
+static const ethd__key_row keys[] = {
+    {{"direction", "read|write", 0, 1, (double)NAN, "as the loop sees it"}, AT(register, direction), NULL},
+    {{"address", ETHD_WHOLE, 0, 65536, (double)NAN, "as in the manual"}, AT(register, address), NULL},
+    {{"bus_unit", ETHD_WHOLE, 0, 247, 0, "unit that has it; bus.unit by default"}, AT(register, bus_unit), NULL},
+    {{"space", "holding|input", 0, 1, 0, "functions 3 and 16, or 4"}, AT(register, space), NULL},
+    {{"type", "u16|i16|u32|i32|f32", 0, 4, (double)NAN, "of the words"}, AT(register, type), NULL},
+    {{"order", "high-first|low-first", 0, 1, 2, "of two words"}, AT(register, order), NULL},
+    {{"unit", ethd__servo_units, 0, 11, 0, "at the motor"}, AT(register, unit), NULL},
+    {{"scale", "1", -1e9, 1e9, 1, "units a raw count"}, AT(register, scale), NULL},
+    {{"offset", "1", -1e9, 1e9, 0, "units at raw 0"}, AT(register, offset), NULL},
+    {{"min", "1", -OPEN_LIMIT, OPEN_LIMIT, -OPEN_LIMIT, "limit, in its unit"}, AT(register, min), NULL},
+    {{"max", "1", -OPEN_LIMIT, OPEN_LIMIT, OPEN_LIMIT, "limit, in its unit"}, AT(register, max), NULL},
+    {{"ratio", "1", 1e-3, 1e4, 1, "motor turns a joint turn"}, AT(register, ratio), NULL},
+    {{"sign", "1|-1", 0, 1, 0, "of the joint's turn"}, AT(register, reversed), NULL},
+    {{"counts", "1", 1, 1e9, 0, "a motor turn"}, AT(register, counts), NULL},
+    {{"torque_constant", "Nm/A", 1e-6, 1e3, 0, "of the motor"}, AT(register, torque_constant), NULL},
+    {{"bits", ETHD_WHOLE, 8, 32, 0, "width of a position's counter: the type's by default"}, AT(register, bits), NULL},
+    {{"speed_max", "rad/s", 0.01, 1e4, 40, "of a joint: a counter that is faster jumped"},
+     AT(register, speed_max),
+     NULL},
+    {{"freeze_torque", "Nm", 1e-6, 1e6, 0, "a change that moves a sound joint, over twice its friction"},
+     AT(register, freeze_torque),
+     NULL},
+    {{"freeze_time", "s", 1e-3, 10, 0.05, "how long it may"}, AT(register, freeze_time), NULL},
+    {{"reverse_torque", "Nm", 1e-6, 1e6, 0, "against which a joint gains no speed, over its friction"},
+     AT(register, reverse_torque),
+     NULL},
+    {{"reverse_time", "s", 1e-3, 10, 0.02, "how long it may"}, AT(register, reverse_time), NULL},
+    {{"inertia", "kg m^2", 1e-9, 1e6, 0.01, "of the joint, for the last two"}, AT(register, inertia), NULL},
+    {{"absolute", "no|yes", 0, 1, 0, "of a position: it means the same angle after the drive was without power"},
+     AT(register, absolute),
+     NULL},
+    {{"every", ETHD_WHOLE, 1, ETHD__SERVO_EVERY_MAX, 1,
       "exchanges from one reading to the next: what changes slowly costs little so"},
-     AT(register, every)},
-    {NUMBER, {"rate", "1/s", 1, 1e5, 300, "of the readings that it counts"}, AT(register, rate)},
-    {NUMBER, {"tolerance", "1", 1e-9, 1e9, 0, "of a measured torque, in its unit"}, AT(register, tolerance)},
-    {WHOLE, {"fault_mask", "1", 1, WORD_MAX, 0, "bits that tell a fault"}, AT(register, fault_mask)},
-    {WHOLE, {"healthy", "1", 0, WORD_MAX, 0, "what they are without one"}, AT(register, healthy)},
-    {WHOLE,
-     {"enabled_mask", "1", 1, WORD_MAX, 0, "bits that tell whether the drive is enabled"},
-     AT(register, enabled_mask)},
-    {WHOLE, {"enabled", "1", 0, WORD_MAX, 0, "what they are when it is"}, AT(register, enabled)},
+     AT(register, every),
+     NULL},
+    {{"rate", "1/s", 1, 1e5, 300, "of the readings that it counts"}, AT(register, rate), NULL},
+    {{"tolerance", "1", 1e-9, 1e9, 0, "of a measured torque, in its unit"}, AT(register, tolerance), NULL},
+    {{"fault_mask", ETHD_WHOLE, 1, WORD_MAX, 0, "bits that tell a fault"}, AT(register, fault_mask), NULL},
+    {{"healthy", ETHD_WHOLE, 0, WORD_MAX, 0, "what they are without one"}, AT(register, healthy), NULL},
+    {{"enabled_mask", ETHD_WHOLE, 1, WORD_MAX, 0, "bits that tell whether the drive is enabled"},
+     AT(register, enabled_mask),
+     NULL},
+    {{"enabled", ETHD_WHOLE, 0, WORD_MAX, 0, "what they are when it is"}, AT(register, enabled), NULL},
 };
 
 #define ROWS(table) table, sizeof table / sizeof *table
 
-/* ---- one value ---- */
-
-static void put(const map_key *r, double value, void *base) {
-  char *at = (char *)base + r->offset;
-  switch (r->kind) {
-  case NUMBER: memcpy(at, &value, sizeof value); break;
-  case CHOICE: memcpy(at, &(int32_t){(int32_t)value}, sizeof(int32_t)); break;
-  case WHOLE: memcpy(at, &(uint32_t){(uint32_t)value}, sizeof(uint32_t)); break;
-  }
-}
-
-static ethd_status set(const ethd__servo_source *s, const map_key *r, const ethd_ini_key *key, void *base) {
-  const ethd__key found = ethd__key_of(s->name, key, s->message);
-  double value;
-  if (r->kind == WHOLE) {
-    if (!ethd__servo_whole(key->value, &value) || !ethd__is_within(value, r->param.min, r->param.max))
-      return ethd__key_range(&found, &r->param, true);
-  } else {
-    ethd_status status = ethd__key_value(&found, &r->param, false, &value);
-    if (status) return status;
-  }
-  put(r, value, base);
-  return ETHD_OK;
-}
-
-/* ---- a section ---- */
-
-static ethd_status read_rows(const ethd__servo_source *s, const char *section, int line, const map_key *table,
-                             size_t count, void *base) {
-  for (size_t i = 0; i < count; i++) {
-    const ethd_ini_key *key = ethd_ini_find(s->ini, section, table[i].param.name);
-    ethd_status status = ETHD_OK;
-    if (key) {
-      status = set(s, &table[i], key, base);
-    } else if (isnan(table[i].param.def)) {
-      status = ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s is missing: %s", s->name, line, section,
-                         table[i].param.name, table[i].param.brief);
-    } else {
-      put(&table[i], table[i].param.def, base);
-    }
-    if (status) return status;
-  }
-  return ETHD_OK;
-}
-
-static bool is_row(const char *name, const map_key *table, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    if (!strcmp(table[i].param.name, name)) return true;
-  return false;
-}
-
-/* `text` names the section's one key whose value is free text. */
-static ethd_status check_known(const ethd__servo_source *s, const char *section, const map_key *table, size_t count,
-                               const char *text) {
-  for (uint32_t i = 0; i < s->ini->count; i++) {
-    const ethd_ini_key *k = &s->ini->keys[i];
-    if (strcmp(k->section, section) || is_row(k->key, table, count) || (text && !strcmp(k->key, text))) continue;
-    return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: a map has no such key there", s->name, k->line, section,
-                     k->key);
-  }
-  return ETHD_OK;
-}
-
-ethd_status ethd__servo_read_bus(const ethd__servo_source *s, int line, ethd__servo_map *map) {
-  ethd_status status = check_known(s, "bus", ROWS(bus), "port");
-  if (!status) status = read_rows(s, "bus", line, ROWS(bus), map);
+ethd_status ethd__servo_read_bus(const ethd__key_file *s, int line, ethd__servo_map *map) {
+  ethd_status status = ethd__keys_known(s, "bus", ROWS(bus), "port");
+  if (!status) status = ethd__keys_read(s, "bus", line, ROWS(bus), map);
   if (status) return status;
   const ethd_ini_key *port = ethd_ini_find(s->ini, "bus", "port");
   if (!port)
@@ -189,10 +116,8 @@ ethd_status ethd__servo_read_bus(const ethd__servo_source *s, int line, ethd__se
                      line);
   if (strlen(port->value) >= sizeof map->port) return ethd__servo_refuse(s, port, "a shorter name");
   strcpy(map->port, port->value);
-  if (map->transport == ETHD__SERVO_RTU && !(map->baud > 0))
+  if (map->transport == ETHD__SERVO_RTU && !map->baud)
     return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: bus.baud is missing: rtu needs it", s->name, line);
-  if (map->baud != rint(map->baud))
-    return ethd__servo_refuse(s, ethd_ini_find(s->ini, "bus", "baud"), "a whole number");
   const char *serial_only = map->crc ? "crc" : map->local_echo ? "local_echo" : map->rs485 ? "rs485" : NULL;
   if (serial_only && map->transport != ETHD__SERVO_RTU)
     return ethd__servo_refuse(s, ethd_ini_find(s->ini, "bus", serial_only), "transport = rtu");
@@ -200,19 +125,19 @@ ethd_status ethd__servo_read_bus(const ethd__servo_source *s, int line, ethd__se
   return ETHD_OK;
 }
 
-ethd_status ethd__servo_read_watchdog(const ethd__servo_source *s, int line, ethd__servo_map *map) {
-  ethd_status status = check_known(s, "watchdog", ROWS(watchdog), NULL);
-  if (!status) status = read_rows(s, "watchdog", line, ROWS(watchdog), map);
+ethd_status ethd__servo_read_watchdog(const ethd__key_file *s, int line, ethd__servo_map *map) {
+  ethd_status status = ethd__keys_known(s, "watchdog", ROWS(watchdog), NULL);
+  if (!status) status = ethd__keys_read(s, "watchdog", line, ROWS(watchdog), map);
   if (!status && map->watchdog && !(map->watchdog_time > 0))
     status = ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: watchdog.time is missing: %s", s->name, line,
                        watchdog[1].param.brief);
   return status;
 }
 
-ethd_status ethd__servo_read_register(const ethd__servo_source *s, const ethd_ini_section *section,
+ethd_status ethd__servo_read_register(const ethd__key_file *s, const ethd_ini_section *section,
                                       const ethd__servo_map *map, ethd__servo_register *out) {
-  ethd_status status = check_known(s, section->name, ROWS(keys), "echo");
-  if (!status) status = read_rows(s, section->name, section->line, ROWS(keys), out);
+  ethd_status status = ethd__keys_known(s, section->name, ROWS(keys), "echo");
+  if (!status) status = ethd__keys_read(s, section->name, section->line, ROWS(keys), out);
   if (status) return status;
   const ethd_ini_key *address = ethd_ini_find(s->ini, section->name, "address");
   uint32_t words = out->type >= ETHD__SERVO_U32 ? 2 : 1;
@@ -223,8 +148,6 @@ ethd_status ethd__servo_read_register(const ethd__servo_source *s, const ethd_in
   if (!unit) out->bus_unit = map->unit;
   if (unit && map->transport == ETHD__SERVO_RTU && !out->bus_unit)
     return ethd__servo_refuse(s, unit, "1 to 247: on a serial line 0 is for all units, and none answers");
-  if (out->sign != 1 && out->sign != -1)
-    return ethd__servo_refuse(s, ethd_ini_find(s->ini, section->name, "sign"), "1 or -1");
   if (out->scale == 0) return ethd__servo_refuse(s, ethd_ini_find(s->ini, section->name, "scale"), "a number but 0");
   if (!out->bits) out->bits = 16 * words;
   return ETHD_OK;

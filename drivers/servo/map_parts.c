@@ -49,21 +49,7 @@ bool ethd__servo_unit_has(const ethd__servo_map *map, int axis, bool (*is)(const
   return torque < 0;
 }
 
-bool ethd__servo_whole(const char *text, double *out) {
-  size_t n = strlen(text);
-  if (n > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) {
-    *out = 0;
-    for (const char *p = text + 2; *p; p++) {
-      const char *hex = "0123456789abcdef0123456789ABCDEF", *at = strchr(hex, *p);
-      if (!at) return false;
-      *out = *out * 16 + (double)((at - hex) % 16);
-    }
-    return n <= 10;
-  }
-  return ethd__number(text, n, out) && *out == rint(*out) && fabs(*out) <= WORD_MAX;
-}
-
-ethd_status ethd__servo_refuse(const ethd__servo_source *s, const ethd_ini_key *key, const char *allowed) {
+ethd_status ethd__servo_refuse(const ethd__key_file *s, const ethd_ini_key *key, const char *allowed) {
   const ethd__key found = ethd__key_of(s->name, key, s->message);
   return ethd__key_found(&found, ETHD_E_RANGE, allowed);
 }

@@ -36,17 +36,17 @@ static bool number(const words *w, uint32_t i, bool whole, double *out) {
   if (w->length[i] >= sizeof text) return false;
   memcpy(text, w->at[i], w->length[i]);
   text[w->length[i]] = 0;
-  return whole ? ethd__servo_whole(text, out) : ethd__number(text, w->length[i], out);
+  return whole ? ethd__whole(text, w->length[i], out) : ethd__number(text, w->length[i], out);
 }
 
-static ethd_status refuse_register(const ethd__servo_source *s, const ethd_ini_key *key, const words *w) {
+static ethd_status refuse_register(const ethd__key_file *s, const ethd_ini_key *key, const words *w) {
   char quote[ETHD_QUOTE_MAX];
   return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: the map has no [register %.*s]: %s", s->name, key->line,
                    key->section, key->key, (int)(w->length[1] < 40 ? w->length[1] : 40), w->at[1],
                    ethd__quote(key->value, strlen(key->value), quote));
 }
 
-static ethd_status read_write(const ethd__servo_source *s, const ethd_ini_key *key, const words *w,
+static ethd_status read_write(const ethd__key_file *s, const ethd_ini_key *key, const words *w,
                               const ethd__servo_map *map, ethd__servo_step *out) {
   double min, max;
   const ethd__servo_register *r = &map->registers[out->at];
@@ -58,7 +58,7 @@ static ethd_status read_write(const ethd__servo_source *s, const ethd_ini_key *k
   return ETHD_OK;
 }
 
-static ethd_status read_wait(const ethd__servo_source *s, const ethd_ini_key *key, const words *w,
+static ethd_status read_wait(const ethd__key_file *s, const ethd_ini_key *key, const words *w,
                              const ethd__servo_map *map, ethd__servo_step *out) {
   double mask, bits, most = map->registers[out->at].type >= ETHD__SERVO_U32 ? 4294967295.0 : 65535;
   if (map->registers[out->at].direction != ETHD__SERVO_READ)
@@ -72,7 +72,7 @@ static ethd_status read_wait(const ethd__servo_source *s, const ethd_ini_key *ke
   return ETHD_OK;
 }
 
-static ethd_status read_step(const ethd__servo_source *s, const ethd_ini_key *key, const ethd__servo_map *map,
+static ethd_status read_step(const ethd__key_file *s, const ethd_ini_key *key, const ethd__servo_map *map,
                              ethd__servo_step *out) {
   words w = split(key->value);
   *out = (ethd__servo_step){.line = key->line, .at = -1};
@@ -98,7 +98,7 @@ static uint32_t step_number(const char *key) {
   return *key ? 0 : n;
 }
 
-ethd_status ethd__servo_read_steps(const ethd__servo_source *s, const char *section, const ethd__servo_map *map,
+ethd_status ethd__servo_read_steps(const ethd__key_file *s, const char *section, const ethd__servo_map *map,
                                    ethd__servo_steps *out) {
   out->count = 0;
   for (uint32_t i = 0; i < s->ini->count; i++) {

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "device/settings.h"
 #include "servo/device.h"
 #include "servo/wire.h"
 #include "servo/words.h"
@@ -15,15 +14,14 @@ const ethd_param ethd__servo_params[ETHD__SERVO_PARAMS] = {
     [ETHD__SERVO_Q1] = {"q1", "rad", -100, 100, 0,
                         "joint 1 in the jig, at the stop or at the mark; in the jig when the device is opened"},
     [ETHD__SERVO_Q2] = {"q2", "rad", -100, 100, 0, "the same of joint 2"},
-    [ETHD__SERVO_JOINT] = {"joint", "1", 1, 2, 1, "of a map with one axis: which joint that is"},
+    [ETHD__SERVO_JOINT] = {"joint", "1|2", 0, 1, 0, "of a map with one axis: which joint that is"},
     [ETHD__SERVO_SPEED] = {"speed", "m/s", 0.01, 10, 1.2, "of the ring: faster is row 24 of the fault table"},
     [ETHD__SERVO_HOME] = {"home", "jig|stop|index", 0, 2, 0,
                           "how the joints are found: by hand in a jig, or by themselves"},
     [ETHD__SERVO_HOME_SPEED] = {"home_speed", "rad/s", 1e-3, 2, 0.1, "towards stop or mark"},
     [ETHD__SERVO_HOME_TORQUE] = {"home_torque", "Nm", 0, 100, 0, "at most; 0: 0.15 of the largest"},
-    [ETHD__SERVO_HOME_WAY1] = {"home_way1", "1", -1, 1, 1,
-                               "1 or -1: towards joint 1's stop or mark its angle rises or falls"},
-    [ETHD__SERVO_HOME_WAY2] = {"home_way2", "1", -1, 1, 1, "the same of joint 2"},
+    [ETHD__SERVO_HOME_WAY1] = {"home_way1", "1|-1", 0, 1, 0, "towards joint 1's stop or mark its angle rises or falls"},
+    [ETHD__SERVO_HOME_WAY2] = {"home_way2", "1|-1", 0, 1, 0, "the same of joint 2"},
     [ETHD__SERVO_UNGUARDED] = {"unguarded", "no|yes", 0, 1, 0,
                                "enable also where the guardian would end with this program: its torque then stays"},
 };
@@ -49,10 +47,6 @@ static ethd_status read_settings(const ethd_device_def *def, settings *out, char
   if (!status && !out->map)
     status =
         ethd__say(message, ETHD_E_ARGUMENT, "%s: device.map is missing: a servo needs its register map", file(def));
-  if (!status && !isnan(out->p[ETHD__SERVO_JOINT]) && out->p[ETHD__SERVO_JOINT] != rint(out->p[ETHD__SERVO_JOINT]))
-    status = ethd__setting_refuse(def, "joint", "1 or 2", message);
-  for (int i = ETHD__SERVO_HOME_WAY1; i <= ETHD__SERVO_HOME_WAY2 && !status; i++)
-    if (fabs(out->p[i]) != 1) status = ethd__setting_refuse(def, ethd__servo_params[i].name, "1 or -1", message);
   return status;
 }
 
@@ -81,7 +75,7 @@ static ethd_status place_axes(ethd__servo_device *d, const ethd_device_def *def,
   if (both && given) return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.joint: the map has both joints", file(def));
   for (int i = 0; i < 2; i++) {
     if (d->joint[i] < 0) continue;
-    if (!both && given) d->joint[i] = (int32_t)s->p[ETHD__SERVO_JOINT] - 1;
+    if (!both && given) d->joint[i] = (int32_t)s->p[ETHD__SERVO_JOINT];
     double q = s->p[d->joint[i] ? ETHD__SERVO_Q2 : ETHD__SERVO_Q1];
     d->home[d->joint[i]] = q;
     d->feedback.home[i] = s->p[ETHD__SERVO_HOME] == ETHD__HOMING_JIG ? q : NAN;
@@ -141,7 +135,7 @@ static ethd_status set_homing(ethd__servo_device *d, const ethd_device_def *def,
     double most = fmin(ethd__servo_most(&d->map.registers[torque]), def->setup->limits.torque);
     double given = s->p[ETHD__SERVO_HOME_TORQUE];
     d->homing[i] = (ethd__homing_def){.method = method,
-                                      .direction = s->p[ETHD__SERVO_HOME_WAY1 + d->joint[i]],
+                                      .direction = s->p[ETHD__SERVO_HOME_WAY1 + d->joint[i]] > 0 ? -1 : 1,
                                       .speed = s->p[ETHD__SERVO_HOME_SPEED],
                                       .torque = given > 0 ? fmin(given, most) : HOME_SHARE * most};
     if (method != ETHD__HOMING_JIG && isnan(d->home[d->joint[i]]))
@@ -216,7 +210,7 @@ static void say_wire(ethd__servo_device *d) {
     snprintf(d->wire, sizeof d->wire,
              "an exchange: %u message%s, %u bytes, %.3g ms of wire, silence and turnaround at %g Bd%s, %.3g with slow "
              "registers; divisor %u gives it %g ms: %s, %u would hold",
-             w.questions, ethd__s(w.questions), w.bytes, 1e3 * w.usual, d->map.baud,
+             w.questions, ethd__s(w.questions), w.bytes, 1e3 * w.usual, (double)d->map.baud,
              d->map.turnaround > 0 ? "" : " (turnaround: not known, ethd-conform --probe measures it)", 1e3 * w.most,
              d->map.divisor, 1e-6 * (double)d->exchange_ns, d->map.divisor >= least ? "it holds" : "it doesn't hold",
              least);

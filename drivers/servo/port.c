@@ -61,7 +61,7 @@ static ethd_status open_tcp(const ethd__servo_map *map, int *fd, char *message) 
 
 /* The map and the line number their formats alike. */
 static ethd_status open_rtu(const ethd__servo_map *map, int *fd, char *message) {
-  ethd_status status = ethd__line_open(map->port, (ethd__line_format)map->format, (uint32_t)map->baud, fd, message);
+  ethd_status status = ethd__line_open(map->port, (ethd__line_format)map->format, map->baud, fd, message);
   if (status || !map->rs485 || ethd__line_rs485(*fd, map->rs485 == 1)) return status;
   return ethd__say(
       message, ETHD_E_DEVICE,

@@ -77,7 +77,7 @@ double ethd__servo_factor(const ethd__servo_register *r) {
 /* The factor from the motor to the joint: the ratio multiplies torques and divides everything else. */
 static double at_joint(const ethd__servo_register *r) {
   double ratio = r->unit == NM || r->unit == A ? r->ratio : 1 / r->ratio;
-  return r->sign * ratio * ethd__servo_factor(r);
+  return (r->reversed ? -ratio : ratio) * ethd__servo_factor(r);
 }
 
 static double nearest(const ethd__servo_register *r, double raw) {

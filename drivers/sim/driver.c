@@ -20,7 +20,6 @@ typedef struct device {
   ethd_sim_def def;
   ethd_sim_tap tap;
   _Atomic int32_t safe; /* any thread's */
-  int32_t reading;      /* as the settings say: ETHD_READING_*; -1: as the plant says */
   bool no_finger;
   bool written;      /* `held` and `due_ns` are known */
   int64_t due_ns;    /* the tick at which the next read is expected */
@@ -43,8 +42,7 @@ static ethd_status create(const ethd_device_def *def, const ethd__sim_settings *
   ethd_status status = load_plant(def, s->plant, &d->def.plant, message);
   if (status) return status;
   ethd__sim_settings_finger(s, &d->def.plant);
-  d->reading = s->reading;
-  d->no_finger = s->no_finger;
+  d->no_finger = s->p[ETHD__SIM_EMPTY] > 0;
   if (d->no_finger) d->def.plant.pad_stiffness = 0;
   status = ethd_sim_create(&d->def, &d->sim, &error);
   if (!status) {
@@ -64,13 +62,9 @@ static ethd_status create(const ethd_device_def *def, const ethd__sim_settings *
 
 static ethd_status sim_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
   ethd__sim_settings s;
-  ethd_error error = {0};
   *out = NULL;
-  ethd_status status = ethd__sim_settings_read(def, &s, &error);
-  if (status) {
-    ethd_error_text(def->file, &error, message);
-    return status;
-  }
+  ethd_status status = ethd__sim_settings_read(def, &s, message);
+  if (status) return status;
   device *d = *out = calloc(1, sizeof *d);
   if (!d) return ETHD_E_MEMORY;
   d->def = (ethd_sim_def){.arm = def->setup->arm,
@@ -134,7 +128,7 @@ static ethd_limits limits(const void *device_) {
   const device *d = device_;
   const ethd_plant *plant = &d->def.plant;
   ethd_limits limits = ethd_limits_torque(plant->force_limit * fmin(d->def.arm.link1, d->def.arm.link2));
-  if (d->reading <= ETHD_READING_RAYS) return limits;
+  if (plant->reading <= ETHD_READING_RAYS) return limits;
   ethd__finger_limits(plant->rate, plant->latency, &limits); /* the same as the real sensor's driver states */
   return limits;
 }

@@ -8,9 +8,10 @@
 #include "text/text.h"
 
 #define AT(member) offsetof(ethd_plant, member)
-#define ROW(section, key, unit, min, max, member, brief) {section, {key, unit, min, max, min, brief}, AT(member)}
+#define ROW(section, key, unit, min, max, member, brief) \
+  {{key, unit, min, max, (double)NAN, brief}, AT(member), section}
 
-const ethd__plant_row ethd__plant_rows[] = {
+const ethd__key_row ethd__plant_rows[] = {
     ROW("device", "mass_x", "kg", 1e-3, 1e3, mass[0], "effective mass at the ring in x: joint 1"),
     ROW("device", "mass_y", "kg", 1e-3, 1e3, mass[1], "likewise in y: joint 2"),
     ROW("device", "coupling", "kg m^2", -1e3, 1e3, coupling, "H of H cos(th2 - th1)"),
@@ -69,7 +70,7 @@ ethd_status ethd__sim_refuse(ethd_error *error, ethd_status status, const char *
 
 /* ---- checks ---- */
 
-static double value_of(const ethd__plant_row *row, const ethd_plant *plant) {
+static double value_of(const ethd__key_row *row, const ethd_plant *plant) {
   const char *at = (const char *)plant + row->offset;
   int32_t choice;
   double number;
@@ -78,7 +79,7 @@ static double value_of(const ethd__plant_row *row, const ethd_plant *plant) {
   return strchr(row->param.unit, '|') ? choice : number;
 }
 
-static ethd_status check_row(const ethd__plant_row *row, const ethd_plant *plant, ethd_error *error) {
+static ethd_status check_row(const ethd__key_row *row, const ethd_plant *plant, ethd_error *error) {
   const ethd_param *p = &row->param;
   double value = value_of(row, plant);
   char name[sizeof error->name];

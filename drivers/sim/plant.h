@@ -5,15 +5,10 @@
 #include <stddef.h>
 
 #include "ethd/sim.h"
+#include "text/key.h"
 
-/* One number of the plant. A choice ("centre|rays") is an int32_t at `offset`, any other number a double. */
-typedef struct ethd__plant_row {
-  const char *section;
-  ethd_param param;
-  size_t offset;
-} ethd__plant_row;
-
-extern const ethd__plant_row ethd__plant_rows[];
+/* The keys of a plant file, each of which it must have. */
+extern const ethd__key_row ethd__plant_rows[];
 extern const size_t ethd__plant_row_count;
 
 /* Checks each row, and what must hold between rows; the error's name is "section.key". [main] */

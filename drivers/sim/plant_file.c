@@ -7,50 +7,19 @@
 
 #include "sim/plant.h"
 #include "text/error_text.h"
-#include "text/key.h"
 #include "text/text.h"
 
 #define BYTES_MAX ((size_t)1 << 16)
 
-static ethd_status set(const char *path, const ethd__plant_row *row, const ethd_ini *ini, ethd_plant *out,
-                       char *message) {
-  const ethd_ini_key *key = ethd_ini_find(ini, row->section, row->param.name);
-  char *at = (char *)out + row->offset;
-  if (!key)
-    return ethd__say(message, ETHD_E_UNKNOWN, "%s: %s.%s is missing, a plant file needs every key", path, row->section,
-                     row->param.name);
-  const ethd__key found = ethd__key_of(path, key, message);
-  double value;
-  ethd_status status = ethd__key_value(&found, &row->param, false, &value);
-  if (status) return status;
-  if (ethd_param_words(&row->param))
-    memcpy(at, &(int32_t){(int32_t)value}, sizeof(int32_t));
-  else
-    memcpy(at, &value, sizeof value);
-  return ETHD_OK;
-}
-
-static bool is_known(const ethd_ini_key *key) {
-  for (size_t i = 0; i < ethd__plant_row_count; i++)
-    if (!strcmp(ethd__plant_rows[i].section, key->section) && !strcmp(ethd__plant_rows[i].param.name, key->key))
-      return true;
-  return false;
-}
-
-static ethd_status fill(const char *path, const ethd_ini *ini, ethd_plant *out, char *message) {
+static ethd_status fill(const ethd__key_file *file, ethd_plant *out) {
   ethd_error error;
-  for (uint32_t i = 0; i < ini->count; i++)
-    if (!is_known(&ini->keys[i]))
-      return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: a plant has no such key", path, ini->keys[i].line,
-                       ini->keys[i].section, ini->keys[i].key);
+  ethd_status status = ethd__keys_known(file, NULL, ethd__plant_rows, ethd__plant_row_count, NULL);
   memset(out, 0, sizeof *out);
   ethd_plant_finger(out, ETHD_READING_CENTRE);
-  for (size_t i = 0; i < ethd__plant_row_count; i++) {
-    ethd_status status = set(path, &ethd__plant_rows[i], ini, out, message);
-    if (status) return status;
-  }
-  ethd_status status = ethd__plant_check(out, &error);
-  if (status) ethd_error_text(path, &error, message);
+  if (!status) status = ethd__keys_read(file, NULL, 0, ethd__plant_rows, ethd__plant_row_count, out);
+  if (status) return status;
+  status = ethd__plant_check(out, &error);
+  if (status) ethd_error_text(file->name, &error, file->message);
   return status;
 }
 
@@ -63,7 +32,7 @@ ethd_status ethd__plant_read(const char *path, const char *name, ethd_plant *out
   status = ethd_ini_parse(text, length, name, NULL, NULL, &ini, message);
   free(text);
   if (status) return status;
-  status = fill(name, &ini, out, message);
+  status = fill(&(ethd__key_file){&ini, name, message}, out);
   ethd_ini_free(&ini);
   return status;
 }

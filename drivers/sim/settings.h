@@ -2,8 +2,6 @@
 #ifndef ETHD__SIM_SETTINGS_H
 #define ETHD__SIM_SETTINGS_H
 
-#include <stdbool.h>
-
 #include "ethd/driver.h"
 #include "ethd/sim.h"
 
@@ -22,6 +20,7 @@ enum {
   ETHD__SIM_ZONES,
   ETHD__SIM_REACH,
   ETHD__SIM_ANGLE,
+  ETHD__SIM_EMPTY,
   ETHD__SIM_PARAMS
 };
 
@@ -29,15 +28,13 @@ extern const ethd_param ethd__sim_params[ETHD__SIM_PARAMS];
 extern const char *const ethd__sim_keys[]; /* ends with NULL */
 
 typedef struct ethd__sim_settings {
-  double p[ETHD__SIM_PARAMS];
-  const ethd_setting *plant; /* NULL: ETHD__PLANT */
-  uint32_t given;            /* bit i: p[i] is given */
-  int32_t reading;           /* ETHD_READING_*, -1: as the plant says */
-  bool no_finger;            /* the ring is empty: nothing presses, and no reading comes */
+  double p[ETHD__SIM_PARAMS]; /* ETHD__SIM_FINGER to ETHD__SIM_ANGLE: NaN: as the plant says */
+  const ethd_setting *plant;  /* NULL: ETHD__PLANT */
 } ethd__sim_settings;
 
 /* Reads the settings; a refusal names the setting's line. [main] */
-ethd_status ethd__sim_settings_read(const ethd_device_def *def, ethd__sim_settings *out, ethd_error *error);
+ethd_status ethd__sim_settings_read(const ethd_device_def *def, ethd__sim_settings *out,
+                                    char message[ETHD_MESSAGE_MAX]);
 
 /* Puts the sensor of the finger for which the settings ask into a plant. [any] */
 void ethd__sim_settings_finger(const ethd__sim_settings *settings, ethd_plant *plant);

@@ -12,9 +12,11 @@ ETHD_BEGIN_DECLS
 #define ETHD_PARAMS_MAX 16
 #define ETHD_BRIEF_MAX 200 /* characters of a unit or a brief: printable ASCII, one line */
 
-/* One number. `unit` is an SI unit ("N/m", "1"), or the words of a choice joined by '|'
-   ("velocity|difference"): the value is then the word's index. A value is valid iff min <= value <= max;
-   it may be infinite only where the table's max is. Frozen within an ABI. */
+#define ETHD_WHOLE "whole" /* the unit of a whole number */
+
+/* One number. `unit` is an SI unit ("N/m", "1"), ETHD_WHOLE, or the words of a choice joined by '|'
+   ("velocity|difference"): the value is then the word's index. A value is valid iff min <= value <= max, and it is
+   whole where the unit says so; it may be infinite only where the table's max is. Frozen within an ABI. */
 typedef struct ethd_param {
   const char *name;
   const char *unit;

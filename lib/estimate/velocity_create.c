@@ -10,11 +10,12 @@ static const ethd_param lowpass[] = {
 };
 
 static const ethd_param lsq[] = {
-    [LSQ_WINDOW] = {"window", "1", 2, ETHD_VELOCITY_WINDOW_MAX, 8, "samples the line is fitted through"},
+    [LSQ_WINDOW] = {"window", ETHD_WHOLE, 2, ETHD_VELOCITY_WINDOW_MAX, 8, "samples the line is fitted through"},
 };
 
 static const ethd_param foaw[] = {
-    [FOAW_WINDOW] = {"window", "1", 2, ETHD_VELOCITY_WINDOW_MAX, 16, "samples the line is fitted through at most"},
+    [FOAW_WINDOW] = {"window", ETHD_WHOLE, 2, ETHD_VELOCITY_WINDOW_MAX, 16,
+                     "samples the line is fitted through at most"},
     [FOAW_NOISE] = {"noise", "rad", 1e-9, 1, 160e-6,
                     "how far a sample may lie from the line: one encoder count, the most that quantisation makes"},
 };
@@ -51,11 +52,7 @@ static ethd_status check(ethd_velocity_method method, const double *p, double pe
   const ethd_method *m = &ethd_velocity_methods[method];
   ethd_status status = ethd__check_number(error, "period", period, PERIOD_MIN, PERIOD_MAX);
   if (!status) status = ethd_params_check(m->params, m->param_count, p, error);
-  if (status) return status;
-  if (method == ETHD_VELOCITY_LSQ || method == ETHD_VELOCITY_FOAW)
-    if (p[0] != floor(p[0]))
-      return ethd__refuse(error, ETHD_E_RANGE, "window", (ethd__found){p[0], 2, ETHD_VELOCITY_WINDOW_MAX});
-  return ETHD_OK;
+  return status;
 }
 
 ethd_status ethd_velocity_prepare(ethd_velocity_method method, const double *p, double period, ethd_velocity *out,

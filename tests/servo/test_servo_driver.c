@@ -320,7 +320,7 @@ TEST(test_settings_refused) {
              {{"map", "no.map", 3}, "no.map: "},
              {{"hurry", "1", 7}, "d.ini:7: device.hurry: servo knows"},
              {{"speed", "inf", 7}, "d.ini:7: device.speed"},
-             {{"joint", "3", 8}, "d.ini:8: device.joint: found \"3\", 1 to 2"},
+             {{"joint", "3", 8}, "d.ini:8: device.joint: found \"3\", 1|2 is allowed"},
              {{"q1", "x", 9}, "d.ini:9: device.q1"}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     ethd_setting one = all[i].one;

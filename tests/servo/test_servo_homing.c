@@ -202,7 +202,7 @@ TEST(test_given) {
     const char *says;
   } bad[] = {{{"home", "floor", 3}, "d.ini:3: device.home: found \"floor\", jig|stop|index"},
              {{"home", "stop", 3}, "device.q1 is missing: its angle at the stop"},
-             {{"home_way1", "0.5", 3}, "device.home_way1: found \"0.5\", 1 or -1 is allowed"},
+             {{"home_way1", "0.5", 3}, "device.home_way1: found \"0.5\", 1|-1 is allowed"},
              {{"home_torque", "-1", 3}, "d.ini:3: device.home_torque"}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     ck_assert_int_lt(open_servo(&bad[i].one, 1), 0);

@@ -220,7 +220,7 @@ TEST(test_set) {
     ck_assert(message[0] && memcmp(&before, &s, sizeof s) == 0);
   }
   ck_assert_int_lt(ethd_config_set(c, "contact.k_e", "-1", &s, message), 0);
-  ck_assert_str_eq(message, "contact.k_e: found -1, 0 to 1000000 N/m is allowed");
+  ck_assert_str_eq(message, "contact.k_e: found \"-1\", 0 to 1000000 N/m is allowed");
   ethd_config_free(c);
 }
 

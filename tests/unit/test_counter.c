@@ -214,19 +214,19 @@ TEST(test_frozen_only_under_torque) {
 static const struct {
   const char *key, *value, *says;
 } bad[] = {
-    {"colour", "red", "c.ini:7: colour"},
-    {"ratio", "0", "c.ini:7: ratio"},
-    {"ratio", "x", "c.ini:7: ratio"},
-    {"sign1", "0.5", "c.ini:7: sign1"},
-    {"width", "12.5", "c.ini:7: width"},
-    {"home", "maybe", "c.ini:7: home"},
-    {"count1", "256", "c.ini:7: count1"},
-    {"count1", "1.5", "c.ini:7: count1"},
-    {"freeze_torque", "nan", "c.ini:7: freeze_torque"},
+    {"colour", "red", "c.ini:7: device.colour"},
+    {"ratio", "0", "c.ini:7: device.ratio"},
+    {"ratio", "x", "c.ini:7: device.ratio"},
+    {"sign1", "0.5", "c.ini:7: device.sign1"},
+    {"width", "12.5", "c.ini:7: device.width"},
+    {"home", "maybe", "c.ini:7: device.home"},
+    {"count1", "256", "c.ini:7: device.count1"},
+    {"count1", "1.5", "c.ini:7: device.count1"},
+    {"freeze_torque", "nan", "c.ini:7: device.freeze_torque"},
     {"device", "/dev/counter9", "/dev/counter9: no such counter"},
     {"device",
      "/a/path/that/is/much/longer/than/any/device/has/ever/been/and/still/goes/on/and/on/until/it/is/too/long",
-     "c.ini:7: device"},
+     "c.ini:7: device.device: "},
 };
 
 TEST_LOOP(test_refused, 0, sizeof bad / sizeof *bad) {

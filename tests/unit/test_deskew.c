@@ -146,5 +146,5 @@ TEST(test_configured) {
   ck_assert_str_eq(message,
                    "x.ini:2: finger_fit.lag: found \"0 1e-3\", a time in s for each of the 16 rays is allowed");
   ck_assert_int_lt(parse("\n[finger_fit]\nlag = 0 0 0 0 0 0 0 0.02 0 0 0 0 0 0 0 0\n", &config, message), 0);
-  ck_assert_str_eq(message, "x.ini:3: finger_fit.lag: found 0.02, -0.01 to 0.01 s is allowed");
+  ck_assert_str_eq(message, "x.ini:3: finger_fit.lag: found \"0.02\", -0.01 to 0.01 s is allowed");
 }

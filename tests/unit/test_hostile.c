@@ -187,7 +187,7 @@ TEST(test_age_of_a_reading) {
     for (int k = 0; k < ETHD__SERVO_ROLES; k++) map.roles[k] = -1;
     for (int k = 0; k < 4; k++) {
       map.roles[given[k]] = k;
-      map.registers[k] = (ethd__servo_register){.sign = 1, .ratio = 1, .scale = 1};
+      map.registers[k] = (ethd__servo_register){.ratio = 1, .scale = 1};
     }
     link.map = &map;
     const double raw[] = {0.001, 0.002, 7, ages[i]};

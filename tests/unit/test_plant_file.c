@@ -153,9 +153,9 @@ TEST(test_refused) {
   refused("force_limit = 5.357", "force_limit = 0x5", ":7: device.force_limit");
   refused("force_limit = 5.357", "force_limit = -1", ":7: device.force_limit");
   refused("force_limit = 5.357", "force_limit = 1\nforce_limit = 1", "force_limit");
-  refused("force_limit = 5.357", "force = 5.357", ":7: device.force: a plant has no such key");
+  refused("force_limit = 5.357", "force = 5.357", ":7: device.force: unknown key");
   refused("force_limit = 5.357", "", "device.force_limit is missing");
-  refused("[finger]", "[thumb]", "thumb.mass: a plant has no such key");
+  refused("[finger]", "[thumb]", "thumb.mass: unknown section");
   refused("count_phase = zero", "count_phase = 0", "found \"0\", zero|drawn is allowed");
   refused("stiffness = inf", "stiffness = 3000", "transmission.motor_mass");
   refused("latency = 1.93e-3", "latency = 0.9", "proximity.latency");

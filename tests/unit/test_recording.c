@@ -283,7 +283,7 @@ TEST(test_bad_events) {
       {"row,kind,detail\n5,heat,0.5\n", "events.csv:2: heat: two numbers from 0 to 1e9 are allowed"},
       {"row,kind,detail\n5,heat,0.5 inf\n", "events.csv:2: heat: two numbers from 0 to 1e9 are allowed"},
       {"row,kind,detail\n5,set,contact.k_e\n", "events.csv:2: set: section.key value is allowed"},
-      {"row,kind,detail\n5,set,contact.k_e -1\n", "events.csv:2: set: contact.k_e: found -1, 0 to 1000000 N/m"},
+      {"row,kind,detail\n5,set,contact.k_e -1\n", "events.csv:2: set: contact.k_e: found \"-1\", 0 to 1000000 N/m"},
       {"row,kind,detail\n5,transition,odd\n", "events.csv:2: transition: transition.law: found \"odd\", abrupt"}};
   char says[256];
   record();

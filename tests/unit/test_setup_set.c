@@ -87,7 +87,8 @@ TEST(test_mechanism) {
 static double inside(const ethd_param *p) {
   double high = isfinite(p->max) ? p->max : fmax(p->min, 0) + 3;
   double low = isfinite(p->min) ? p->min : high - 7;
-  return ethd_param_words(p) ? p->max : low + (high - low) / 4;
+  double value = low + (high - low) / 4;
+  return ethd_param_words(p) ? p->max : strcmp(p->unit, ETHD_WHOLE) ? value : floor(value);
 }
 
 /* The same value by the name and by a configuration of that one key. */

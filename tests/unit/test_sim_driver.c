@@ -51,13 +51,13 @@ TEST(test_table) {
 
 TEST(test_refused) {
   refused("colour", "red", ETHD_E_UNKNOWN, "colour");
-  refused("step", "1x", ETHD_E_SYNTAX, "step");
+  refused("step", "1x", ETHD_E_RANGE, "step");
   refused("step", "0", ETHD_E_RANGE, "step");
   refused("step", "nan", ETHD_E_RANGE, "step");
   refused("seed", "1.5", ETHD_E_RANGE, "seed");
   refused("tap", "-1", ETHD_E_RANGE, "tap");
   refused("speed", "inf", ETHD_E_RANGE, "speed");
-  refused("reading", "sound", ETHD_E_UNKNOWN, "reading");
+  refused("finger", "sound", ETHD_E_UNKNOWN, "finger");
   refused("plant", "x", ETHD_E_FILE, "x.plant");
   refused("plant", "wall.scene", ETHD_E_SYNTAX, "wall.scene:2");
 }
@@ -65,7 +65,7 @@ TEST(test_refused) {
 /* The same device as the one that is built by hand. */
 TEST(test_lock_step) {
   static const ethd_setting settings[] = {
-      {"plant", "p", 1}, {"seed", "9", 2}, {"tap", "4", 3}, {"speed", "0.3", 4}, {"reading", "rays", 5}};
+      {"plant", "p", 1}, {"seed", "9", 2}, {"tap", "4", 3}, {"speed", "0.3", 4}, {"finger", "rays", 5}};
   void *device = open_with(settings, 5);
   char message[ETHD_MESSAGE_MAX];
   ethd_sim_def def = sim_def();

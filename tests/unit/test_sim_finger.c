@@ -125,9 +125,9 @@ TEST(test_settings) {
   ck_assert(!open_sim("finger_rate", "50", &limits, message));
   ck_assert_double_eq_tol(limits.finger_age, 1.2e-3 + 3 / 50.0, 1e-12);
   const char *const bad[][3] = {
-      {NULL, "eyes", "c.ini:3: finger: "},          {"zones", "7", "c.ini:4: zones: "},
-      {"zones", "17", "c.ini:4: zones: "},          {"zones", "9.5", "c.ini:4: zones: "},
-      {"zone_reach", "0", "c.ini:4: zone_reach: "}, {"finger_rate", "0", "c.ini:4: finger_rate: "}};
+      {NULL, "eyes", "c.ini:3: device.finger: "},          {"zones", "7", "c.ini:4: device.zones: "},
+      {"zones", "17", "c.ini:4: device.zones: "},          {"zones", "9.5", "c.ini:4: device.zones: "},
+      {"zone_reach", "0", "c.ini:4: device.zone_reach: "}, {"finger_rate", "0", "c.ini:4: device.finger_rate: "}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     ck_assert_int_lt(open_sim(bad[i][0], bad[i][1], &limits, message), 0);
     ck_assert_msg(strstr(message, bad[i][2]) == message, "%s", message);

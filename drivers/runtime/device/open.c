@@ -31,11 +31,8 @@ typedef struct naming {
 } naming;
 
 static ethd_status refuse_name(const naming *n, const char *name, size_t length) {
-  char quote[ETHD_QUOTE_MAX], list[ETHD_MESSAGE_MAX / 2] = "";
-  for (size_t i = 0; n->from[i]; i++) {
-    if (i) strncat(list, ", ", sizeof list - strlen(list) - 1);
-    strncat(list, n->from[i]->id, sizeof list - strlen(list) - 1);
-  }
+  char quote[ETHD_QUOTE_MAX], list[ETHD_MESSAGE_MAX] = "";
+  for (size_t i = 0; n->from[i]; i++) ethd__list_add(list, n->from[i]->id);
   return ethd__say(n->message, ETHD_E_UNKNOWN, "%s: device.driver: found %s; %s and file:PATH are allowed",
                    file_of(n->def), ethd__quote(name, length, quote), list);
 }
@@ -219,7 +216,7 @@ static ethd_status read_hang_time(ethd__stack *s, const ethd_device_def *def, ch
   double value = row.def;
   const ethd_setting *own = find_common(def, HANG_TIME);
   const ethd__key key = own ? ethd__setting_key(def, own, message) : (ethd__key){0};
-  ethd_status status = own ? ethd__key_value(&key, &row, false, &value) : ETHD_OK;
+  ethd_status status = own ? ethd__key_value(&key, &row, &value) : ETHD_OK;
   s->hang_time = (unsigned)value;
   return status;
 }

@@ -9,24 +9,10 @@ ethd__key ethd__setting_key(const ethd_device_def *def, const ethd_setting *s, c
   return (ethd__key){def->file ? def->file : "the defaults", s->line, "device", s->key, s->value, message};
 }
 
-ethd_status ethd__setting_refuse(const ethd_device_def *def, const char *key, const char *allowed,
-                                 char message[ETHD_MESSAGE_MAX]) {
-  for (uint32_t k = 0; k < def->setting_count; k++) {
-    const ethd__key found = ethd__setting_key(def, &def->settings[k], message);
-    if (!strcmp(found.key, key)) return ethd__key_found(&found, ETHD_E_RANGE, allowed);
-  }
-  return ethd__say(message, ETHD_E_RANGE, "device.%s: %s is allowed", key, allowed);
-}
-
-static void add_name(char *list, size_t room, const char *name) {
-  size_t n = strlen(list);
-  snprintf(list + n, room - n, "%s%s", n ? ", " : "", name);
-}
-
 static ethd_status refuse_key(const ethd_driver *d, const ethd__key *key) {
   char list[ETHD_MESSAGE_MAX] = "";
-  for (const char *const *other = d->keys; other && *other; other++) add_name(list, sizeof list, *other);
-  for (uint32_t i = 0; i < d->param_count; i++) add_name(list, sizeof list, d->params[i].name);
+  for (const char *const *other = d->keys; other && *other; other++) ethd__list_add(list, *other);
+  for (uint32_t i = 0; i < d->param_count; i++) ethd__list_add(list, d->params[i].name);
   return ethd__key_refuse(key, ETHD_E_UNKNOWN, "%s %s%s", d->id, list[0] ? "knows " : "has no settings", list);
 }
 
@@ -46,7 +32,7 @@ ethd_status ethd_settings_read(const ethd_driver *driver, const ethd_device_def 
     if (key >= 0)
       texts[key] = s;
     else if (row >= 0)
-      status = ethd__key_value(&found, &driver->params[row], false, &values[row]);
+      status = ethd__key_value(&found, &driver->params[row], &values[row]);
     else
       status = refuse_key(driver, &found);
   }

@@ -8,8 +8,4 @@
 /* A setting as a key of [device]. */
 ethd__key ethd__setting_key(const ethd_device_def *def, const ethd_setting *s, char message[ETHD_MESSAGE_MAX]);
 
-/* Refuses a key that the configuration has: "file:line: device.key: found X, `allowed` is allowed". [main] */
-ETHD_MUST_CHECK ethd_status ethd__setting_refuse(const ethd_device_def *def, const char *key, const char *allowed,
-                                                 char message[ETHD_MESSAGE_MAX]);
-
 #endif

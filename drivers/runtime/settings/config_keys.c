@@ -1,5 +1,3 @@
-#include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -15,43 +13,32 @@ int ethd__config_limit(const char *section, const char *key) {
   return -1;
 }
 
-/* Reads one number, or as many as the key holds, or the index of a word. */
-static ethd_status read_values(const ethd_setup_key *row, const ethd__key *key, double values[ETHD_RAYS]) {
-  const char *allowed = row->count == 1 ? "a decimal number" : row->param.brief, *p = key->value;
-  if (ethd_param_words(&row->param)) {
-    values[0] = ethd_param_word(&row->param, key->value);
-    return values[0] < 0 ? ethd__key_found(key, ETHD_E_UNKNOWN, row->param.unit) : ETHD_OK;
-  }
+/* Reads and sets the numbers that the key holds, one by one. */
+static ethd_status read_values(const ethd_setup_key *row, const ethd__key *key, ethd_setup *setup) {
+  char name[96], word[256];
+  const char *p = key->value;
   for (uint32_t i = 0; i < row->count; i++) {
-    size_t n = strcspn(p += strspn(p, " \t"), " \t");
-    if (!ethd__number(p, n, &values[i]) || isnan(values[i])) return ethd__key_found(key, ETHD_E_SYNTAX, allowed);
+    size_t n = row->count > 1 ? strcspn(p += strspn(p, " \t"), " \t") : strlen(p);
+    ethd__key one = *key;
+    double value;
+    if (!n || n >= sizeof word) return ethd__key_found(key, ETHD_E_SYNTAX, row->param.brief);
+    snprintf(word, sizeof word, "%.*s", (int)n, p);
+    one.value = word;
     p += n;
+    ethd_status status = ethd__key_value(&one, &row->param, &value);
+    if (status) return status;
+    snprintf(name, sizeof name, row->count > 1 ? "%s.%s[%u]" : "%s.%s", row->section, row->param.name, i);
+    status = ethd_setup_set(setup, name, value, NULL);
+    if (status) return ethd__key_refuse(key, status, "%s", ethd_status_sentence(status));
   }
-  return p[strspn(p, " \t")] ? ethd__key_found(key, ETHD_E_SYNTAX, allowed) : ETHD_OK;
-}
-
-static ethd_status set_values(const ethd_setup_key *row, const ethd__key *key, const double *values,
-                              ethd_setup *setup) {
-  char name[96];
-  for (uint32_t i = 0; i < row->count; i++) {
-    const ethd_param *p = &row->param;
-    snprintf(name, sizeof name, row->count > 1 ? "%s.%s[%u]" : "%s.%s", row->section, p->name, i);
-    ethd_status status = ethd_setup_set(setup, name, values[i], NULL);
-    if (status)
-      return ethd__key_refuse(key, status, "found %.10g, %.10g to %.10g %s is allowed", values[i], p->min, p->max,
-                              p->unit);
-  }
-  return ETHD_OK;
+  return *p ? ethd__key_found(key, ETHD_E_SYNTAX, row->param.brief) : ETHD_OK;
 }
 
 ethd_status ethd__config_number(const ethd__key *key, ethd_setup *setup) {
   ethd_setup_key row;
-  double values[ETHD_RAYS];
-  for (uint32_t i = 0; ethd_setup_key_at(setup, i, &row) == ETHD_OK; i++) {
-    if (strcmp(row.section, key->section) != 0 || strcmp(row.param.name, key->key) != 0) continue;
-    ethd_status status = read_values(&row, key, values);
-    return status ? status : set_values(&row, key, values, setup);
-  }
+  for (uint32_t i = 0; ethd_setup_key_at(setup, i, &row) == ETHD_OK; i++)
+    if (strcmp(row.section, key->section) == 0 && strcmp(row.param.name, key->key) == 0)
+      return read_values(&row, key, setup);
   return ethd__config_unknown(key, setup);
 }
 

@@ -6,18 +6,13 @@
 #include "settings/config_parts.h"
 #include "text/error_text.h"
 
-static void list(char out[ETHD_MESSAGE_MAX], const char *id) {
-  size_t n = strlen(out);
-  snprintf(out + n, ETHD_MESSAGE_MAX - n, "%s%s", n ? ", " : "", id);
-}
-
 ethd_status ethd__config_choose(const ethd_config *config, const ethd__key *key, ethd_setup *setup) {
   const ethd_setup_part *part = ethd_setup_part_of(key->section);
   char ids[ETHD_MESSAGE_MAX] = "", quote[ETHD_QUOTE_MAX];
   if (ethd_setup_choose(setup, key->section, key->value, config->laws, NULL) == ETHD_OK) return ETHD_OK;
-  for (uint32_t i = 0; i < part->count; i++) list(ids, part->methods[i].id);
+  for (uint32_t i = 0; i < part->count; i++) ethd__list_add(ids, part->methods[i].id);
   for (const ethd_law *const *law = config->laws; !part->methods && *law; law++)
-    if ((*law)->kind == part->kind) list(ids, (*law)->id);
+    if ((*law)->kind == part->kind) ethd__list_add(ids, (*law)->id);
   if (part->methods || !key->file) return ethd__key_found(key, ETHD_E_UNKNOWN, ids);
   return ethd__key_refuse(key, ETHD_E_UNKNOWN, "found %s, %s is allowed; %s",
                           ethd__quote(key->value, strlen(key->value), quote), ids,

@@ -115,15 +115,10 @@ ethd_status ethd__config_read(ethd__config *whole, const ethd__key *key, ethd__p
 
 /* ---- unknown keys and sections ---- */
 
-static void add(char list[ETHD_MESSAGE_MAX], const char *word) {
-  size_t n = strlen(list);
-  snprintf(list + n, ETHD_MESSAGE_MAX - n, "%s%s", n ? ", " : "", word);
-}
-
 /* "unknown section; arm, ... are allowed" */
 static const char *unknown_section(char out[ETHD_MESSAGE_MAX]) {
   char list[ETHD_MESSAGE_MAX] = "";
-  for (const ethd__section *s = ethd__sections; s->name; s++) add(list, s->name);
+  for (const ethd__section *s = ethd__sections; s->name; s++) ethd__list_add(list, s->name);
   snprintf(out, ETHD_MESSAGE_MAX, "unknown section; %.*s are allowed", ETHD_MESSAGE_MAX - 64, list);
   return out;
 }
@@ -142,11 +137,11 @@ ethd_status ethd__config_unknown(const ethd__key *key, const ethd_setup *setup) 
   char list[ETHD_MESSAGE_MAX] = "";
   ethd_setup_key row;
   if (!section) return ethd__key_refuse(key, ETHD_E_UNKNOWN, "%s", unknown_section(list));
-  if (part) add(list, part->chooser);
+  if (part) ethd__list_add(list, part->chooser);
   for (size_t i = 0; i < sizeof section->keys / sizeof *section->keys && section->keys[i].key; i++)
-    add(list, section->keys[i].key);
+    ethd__list_add(list, section->keys[i].key);
   for (uint32_t i = 0; ethd_setup_key_at(setup, i, &row) == ETHD_OK; i++)
-    if (strcmp(row.section, key->section) == 0) add(list, row.param.name);
+    if (strcmp(row.section, key->section) == 0) ethd__list_add(list, row.param.name);
   if (!part) return ethd__key_refuse(key, ETHD_E_UNKNOWN, "unknown key; %s are allowed", list);
   return ethd__key_refuse(key, ETHD_E_UNKNOWN, "not a key of %s, which has %s", ethd_setup_chosen(setup, part).id,
                           list);

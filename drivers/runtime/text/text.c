@@ -164,6 +164,14 @@ bool ethd__number(const char *text, size_t length, double *out) {
   return isfinite(*out);
 }
 
+bool ethd__whole(const char *text, size_t length, double *out) {
+  if (length > 2 && length <= 10 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) {
+    *out = strtod(text, NULL);
+    return strspn(text + 2, "0123456789abcdefABCDEF") == length - 2;
+  }
+  return ethd__number(text, length, out) && *out == rint(*out);
+}
+
 bool ethd__text_is_word(const char *text, size_t most, const char *letters) {
   size_t n = text ? strnlen(text, most + 1) : 0;
   return n >= 1 && n <= most && strspn(text, letters) == n;

@@ -39,6 +39,9 @@ void ethd_replace_abandon(ethd_replace *replace);
    large for a double is refused. text[length] must be readable and not part of a number. */
 bool ethd__number(const char *text, size_t length, double *out);
 
+/* Reads a whole number: decimal as above, or "0x" and 1 to 8 hexadecimal digits. */
+bool ethd__whole(const char *text, size_t length, double *out);
+
 /* Returns whether min <= value <= max. A NaN isn't, and raises no floating-point trap, as a plain comparison would.
    [any] */
 static inline bool ethd__is_within(double value, double min, double max) {
