@@ -15,10 +15,11 @@ echo
 # None of the words that gnuplot gets is a path, because a quote in one would end its string.
 plant=$(basename "$PLANT" .plant | tr -cd '[:alnum:]_.-')
 plot() { (cd "$out" && gnuplot -e "$1" "$here/plot/$2"); }
-for law in abrupt smooth offset; do
-  for speed in low high; do
+for speed in low high; do
+  for law in abrupt smooth offset predictive; do
     plot "in='traces/$law-$speed.csv'; out='$law-$speed.png'; title='$law, $speed speed'; plant='$plant'" tap.gp
   done
+  plot "in='traces'; speed='$speed'; out='beside-$speed.png'; plant='$plant'" ahead-taps.gp
 done
 plot "in='taps.csv'; out='boxes.png'; plant='$plant'" boxes.gp
 
@@ -30,10 +31,9 @@ rm -rf "$out/study" "$out/crowd"
 "$BUILD/bin/ethd-report" "$out/study" --beside "$out/crowd" >/dev/null
 
 echo "pictures, in the manner of the paper's figures:"
-for law in smooth offset abrupt; do
-  for speed in low high; do echo "  $out/$law-$speed.png"; done
-done
-echo "  $out/boxes.png"
+echo "  $out/smooth-low.png, offset-low.png, smooth-high.png, offset-high.png: figures 9 to 12, and abrupt-, predictive-"
+echo "  $out/beside-low.png, beside-high.png: smooth, offset and predictive beside each other"
+echo "  $out/boxes.png: figures 14 to 17"
 echo "and the figures behind them: $out/taps.csv, $out/traces/"
 echo
 echo "the paper's study, 3 simulated people, 3 valid taps in each of 4 cells, every tick of it: $out/study"

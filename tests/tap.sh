@@ -73,6 +73,18 @@ awk -F, 'NR > 1 { n[$2] += $5; if ($5 && $18 != "") { s[$2] += $18; m[$2]++ } ha
   END { for (i = 0; i < 20; i++) if (hand[i, "offset"] != hand[i, "predictive"]) exit 1
         exit !(n["predictive"] >= 15 && s["predictive"] / m["predictive"] < 1e-4 && s["offset"] / m["offset"] > 2e-4) }' \
   "$folder/v.csv" || fail "by the finger: $(cat "$folder/v.csv")"
+# The table has the same taps twice: by the ring, which says nothing of such a law, and by the finger; its means are the CSV's.
+"$tap" --taps 20 --speed low --transition offset,predictive >"$folder/v.txt"
+"$tap" --taps 20 --speed low --transition offset,predictive --validity finger >"$folder/w.txt"
+grep -q '^predictive low  .* stops before the wall: see below$' "$folder/v.txt" || fail "no word of a law that stops the ring: $(cat "$folder/v.txt")"
+[ "$(grep -c '^offset ' "$folder/v.txt")" = 2 ] || fail "not two rows of offset: $(cat "$folder/v.txt")"
+for law in offset predictive; do
+  [ "$(grep "^$law " "$folder/v.txt" | tail -n 1)" = "$(grep "^$law " "$folder/w.txt")" ] || fail "two tables by the finger: $(cat "$folder/v.txt" "$folder/w.txt")"
+  awk -F, -v law=$law 'NR > 1 && $2 == law && $5 { n++; s[7] += $16; s[9] += $8; s[11] += 1e3 * $9; s[13] += $10; s[15] += 1e3 * $17; s[17] += 1e3 * $18 }
+    END { printf "%.3f %.3f %.2f %.3f %.3f %.3f", s[7] / n, s[9] / n, s[11] / n, s[13] / n, s[15] / n, s[17] / n }' "$folder/v.csv" >"$folder/means"
+  [ "$(awk -v law=$law '$1 == law { print $6, $8, $10, $12, $14, $16 }' "$folder/w.txt")" = "$(cat "$folder/means")" ] ||
+    fail "means by the finger: $(cat "$folder/means" "$folder/w.txt")"
+done
 "$tap" --taps 2 --speed high --transition predictive --learn 2 --set transition.learn=0.3 --set arm.mass_x=0.15 \
   --record "$folder/learnt" >/dev/null
 grep -q ',learned,' "$folder/learnt/events.csv" || fail "what was learnt isn't in the recording"

@@ -1,4 +1,4 @@
-# The paper's figures 11 and 12, and the law that brakes before the wall beside them: a typical tap of each.
+# As the paper's figures 9 and 10, or 11 and 12, and the law that brakes before the wall beside them: a typical tap of each.
 #   gnuplot -e "in='traces'; speed='high'; out='taps.png'" ahead-taps.gp
 # in: a folder of ethd-tap --trace with smooth-, offset- and predictive-SPEED.csv. plant names the plant in the title.
 if (!exists("in") || !exists("out")) { print "ahead-taps.gp: set in and out"; exit status 2 }
@@ -12,7 +12,8 @@ set grid lc rgb "#e4e4e4" lt 1
 set border 3 lc rgb "#7a7a7a"
 set tics nomirror
 laws = "smooth offset predictive"
-names = "'smooth (VO-A, figure 11)' 'offset (VO-B, figure 12)' 'predictive'"
+first = speed eq "low" ? 9 : 11
+names = sprintf("'smooth (VO-A, figure %d)' 'offset (VO-B, figure %d)' 'predictive'", first, first + 1)
 file(i) = in."/".word(laws, i)."-".speed.".csv"
 t(x) = 1e3*column("since_wall_s")
 left(i) = 0.055 + 0.32*(i - 1)
@@ -37,21 +38,20 @@ do for [i=1:3] {
   set ylabel i == 1 ? "position along n, mm" : "" offset 1
   set key bottom right Left reverse samplen 1.5
   plot 0 with lines lc rgb "#333333" lw 1.6 dt (14,6) title i == 1 ? "wall x_e" : "", \
-       file(i) using (t(0)):(moved ? 1e3*column("offset_wall_m") : 0) with lines lc rgb "#d98a00" lw 2.2 dt (6,4) title (moved ? "wall x_{/Symbol e}" : ""), \
+       file(i) using (t(0)):(moved ? 1e3*column("offset_wall_m") : 0) with lines lc rgb (moved ? "#d98a00" : "#333333") lw 2.2 dt (6,4) title (moved ? "wall x_{/Symbol e}" : ""), \
        file(i) using (t(0)):(1e3*column("finger_m")) with lines lc rgb "#1f5fa8" lw 2.2 title i == 1 ? "finger's pad" : "", \
        file(i) using (t(0)):(1e3*column("ring_m")) with lines lc rgb "#c0392b" lw 2.4 title i == 1 ? "ring's front" : ""
   set tmargin at screen 0.43
   set bmargin at screen 0.08
   unset title
-  set yrange [-0.3:0.7]
+  set yrange [-0.5:0.8]
   set format x "%g"
   set xlabel "time from t_{r/vo}, ms" offset 0,0.4
   set ylabel i == 1 ? "speed along n, m/s" : "" offset 1
   if (touch == touch) {set label 1 " finger touches" at touch, graph 0.95 textcolor rgb "#1f5fa8" font "Sans,12"}
-  set key top right
   plot 0 with lines lc rgb "#bbbbbb" notitle, \
-       file(i) using (t(0)):"v_finger_mps" with lines lc rgb "#1f5fa8" lw 1.6 title i == 1 ? "finger" : "", \
-       file(i) using (t(0)):"v_ring_mps" with lines lc rgb "#c0392b" lw 2.4 title i == 1 ? "ring" : ""
+       file(i) using (t(0)):"v_finger_mps" with lines lc rgb "#1f5fa8" lw 1.6 notitle, \
+       file(i) using (t(0)):"v_ring_mps" with lines lc rgb "#c0392b" lw 2.4 notitle
   unset label 1
   unset arrow
 }

@@ -179,7 +179,10 @@ static void count_ticks(const ethd__tap_rows *rows, ethd__result *out) {
 }
 
 void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const ethd_sim_tap *tap, ethd__result *out) {
+  ethd__rule by_finger = *rule;
+  by_finger.validity = ETHD_TAP_BY_FINGER;
   ethd__metrics_of(&stage->rows, rule, &out->metrics);
+  ethd__metrics_of(&stage->rows, &by_finger, &out->finger);
   out->commanded = tap->commanded;
   out->finger_radius = tap->finger_radius;
   count_ticks(&stage->rows, out);

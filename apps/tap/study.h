@@ -85,11 +85,11 @@ ethd__rule ethd__stage_rule(const ethd__stage *stage, const ethd__speed *speed, 
 ethd__view ethd__stage_view(const ethd__stage *stage, const ethd__speed *speed, double finger_radius);
 
 typedef struct ethd__result {
-  ethd__metrics metrics;
-  double commanded;          /* m/s: what was drawn for this tap */
-  double finger_radius;      /* m: likewise */
-  uint32_t ticks, queried;   /* of which the scene was asked */
-  ethd__law_fault law_fault; /* the first of a tap that ethd__stage_run made */
+  ethd__metrics metrics, finger; /* by the study's rule; by the finger's, from the pad's first touch on */
+  double commanded;              /* m/s: what was drawn for this tap */
+  double finger_radius;          /* m: likewise */
+  uint32_t ticks, queried;       /* of which the scene was asked */
+  ethd__law_fault law_fault;     /* the first of a tap that ethd__stage_run made */
 } ethd__result;
 
 /* Judges the ticks in stage->rows, which are this tap's. */

@@ -8,7 +8,8 @@ typedef struct ethd__cell {
   const char *law;
   const ethd__speed *speed;
   ethd__result *results;
-  size_t count; /* taps done */
+  size_t count;   /* taps done */
+  bool by_finger; /* figures are those by the finger's rule, else by the study's */
 } ethd__cell;
 
 /* A figure of ethd__metrics, over the valid taps that have it. */
@@ -24,6 +25,10 @@ ethd__figure ethd__cell_figure(const ethd__cell *cell, size_t field);
 double ethd__cell_median(const ethd__cell *cell, size_t field);
 
 size_t ethd__cell_valid(const ethd__cell *cell);
+
+/* Whether the ring stops before the wall: most taps that are valid by the finger are not by the ring, which was too slow
+   there, or not there yet. */
+bool ethd__cell_stops(const ethd__cell *cell);
 
 /* Returns the share of the valid taps with this figure in [from, to); NaN if there are no valid taps. */
 double ethd__cell_share(const ethd__cell *cell, size_t field, double from, double to);
