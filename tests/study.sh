@@ -227,11 +227,24 @@ refuse 'bad.study:2: grid.contact.k: ' '[grid]\ncontact.k = 1\n' --simulate 2
 refuse 'bad.study:2: grid.contact.k_e: .*found -1' '[grid]\ncontact.k_e = 2500,-1\n' --simulate 2
 refuse 'a session has no grid' '[grid]\ncontact.k_e = 1000\n'
 refuse 'nothing.ini: No such' '[device]\nconfig = ./nothing.ini\n'
+refuse 'none.scene: No such' '[scene]\nfile = ./none.scene\n'
+printf 'square 1\n' >"$folder/odd.scene"
+refuse 'odd.scene:1: .*polygon' "[scene]\nfile = $folder/odd.scene\n"
 refuse 'participant: found 9' '[study]\n' --participant 9
 "$study" "$folder/none.study" --out "$folder/bad" >"$folder/out" 2>"$folder/err" && fail "no study file"
 grep -q 'none.study: No such file' "$folder/err" || fail "no study file: $(cat "$folder/err")"
 "$study" --out "$folder/paper" >"$folder/out" 2>"$folder/err" && fail "a session over another"
 grep -q 'holds a session; --resume' "$folder/err" || fail "a session over another: $(cat "$folder/err")"
+
+# A study's own scene stands in the place of its configuration's, for any hand.
+cmp "$folder/paper/scene.scene" "$BUILD/share/ethd/room.scene" || fail "the paper's study isn't in the room"
+printf '[arm]\n[scene]\nfile = away.scene\n[contact]\nk_e = 2000\n' >"$folder/away.ini"
+echo 'halfplane -1 0 -0.2' >"$folder/away.scene"
+printf '[study]\nparticipants = 1\ntaps = 1\ntraining = 0\n[device]\nconfig = away.ini\n[scene]\nfile = near.scene\n' >"$folder/scene.study"
+echo 'halfplane -1 0 -0.25' >"$folder/near.scene"
+"$study" "$folder/scene.study" --quiet --out "$folder/scene" >"$folder/out" 2>&1 || fail "a study's scene: $(cat "$folder/out")"
+cmp "$folder/scene/scene.scene" "$folder/near.scene" || fail "the study's scene isn't the folder's"
+printf '[arm]\n[scene]\nfile = scene.scene\n[contact]\nk_e = 2000\n' | cmp - "$folder/scene/config.ini" || fail "the scene's line"
 
 # another study doesn't replace a simulation, the same one goes on; and no study overwrites its own inputs
 printf '[study]\ntaps = 1\nattempts = 3\ntraining = 0\n' >"$folder/one.study"

@@ -2,9 +2,10 @@
 
 #include <math.h>
 
-#define CONTOUR 0.0028 /* m */
-#define CUE 0.0016     /* m, half the cue's height */
-#define REST 0.8       /* s between two runs of the cue */
+#define CONTOUR 0.07      /* of the room's height */
+#define CUE 0.04          /* of it, half the cue's height */
+#define START_LINE 0.0075 /* of it, half the start line's width */
+#define REST 0.8          /* s between two runs of the cue */
 
 const SDL_Color ethd__white = {255, 255, 255, 255}, ethd__grey = {150, 150, 150, 255}, ethd__green = {0, 190, 80, 255},
                 ethd__red = {255, 110, 90, 255};
@@ -12,10 +13,21 @@ const SDL_Color ethd__white = {255, 255, 255, 255}, ethd__grey = {150, 150, 150,
 void ethd__draw_fit(ethd__screen *s) {
   const ethd__study *study = &s->desk->study;
   const ethd_setup *setup = &s->desk->loaded->config->setup;
-  double wall = study->meet.x - setup->ring_radius;
-  s->frame = ethd__room_of(wall, study->meet.x + study->plant.start, study->meet.y, study->plant.finger_radius,
-                           s->window.width, s->window.height);
+  const ethd_vec start = {study->meet.x + study->plant.start, study->meet.y};
+  double inner, outer, wall[ETHD_WALLS] = {study->meet.x - setup->ring_radius};
+  ethd_arm_reach(&setup->arm, &inner, &outer);
+  for (int i = ETHD_WALL_RIGHT; i < ETHD_WALLS; i++) {
+    const ethd_vec towards = {i == ETHD_WALL_RIGHT, (i == ETHD_WALL_TOP) - (i == ETHD_WALL_BOTTOM)};
+    ethd_vec x = start;
+    ethd_nearest near;
+    bool there = ethd__way_to_wall(study->config->scene, 0, towards, outer, &x, &near) > 0;
+    wall[i] = !there ? NAN : i == ETHD_WALL_RIGHT ? x.x : x.y;
+  }
+  s->frame = ethd__room_of(wall, start, study->plant.finger_radius, s->window.width, s->window.height);
 }
+
+/* m, of a share of the room's height. */
+static double share(const ethd__screen *s, double of) { return of * (s->frame.top - s->frame.bottom); }
 
 ethd_vec ethd__draw_finger(const ethd__screen *s) {
   if (s->device) return s->device->finger(s->device->self);
@@ -30,17 +42,22 @@ static void box(ethd__screen *s, double left, double top, double right, double b
 
 static void cue(ethd__screen *s, double seconds) {
   const ethd__room *f = &s->frame;
-  double way = f->start - f->left - f->finger, pass = way / s->speed.centre;
-  double t = fmod(seconds, pass + REST), x = f->start - way * fmin(t / pass, 1);
-  box(s, f->start - way, f->top + CONTOUR + 2.6 * CUE, f->start, f->top + CONTOUR + 2.4 * CUE, ethd__grey);
-  box(s, x - CUE / 3, f->top + CONTOUR + 3.5 * CUE, x + CUE / 3, f->top + CONTOUR + 1.5 * CUE, ethd__white);
+  double way = f->start.x - f->left - f->finger, pass = way / s->speed.centre, high = share(s, CUE);
+  double t = fmod(seconds, pass + REST), x = f->start.x - way * fmin(t / pass, 1), y = f->top + share(s, CONTOUR);
+  box(s, f->start.x - way, y + 2.6 * high, f->start.x, y + 2.4 * high, ethd__grey);
+  box(s, x - high / 3, y + 3.5 * high, x + high / 3, y + 1.5 * high, ethd__white);
 }
 
 void ethd__draw_room(ethd__screen *s, ethd_vec x, double seconds) {
   const ethd__room *f = &s->frame;
-  box(s, f->left - CONTOUR, f->top + CONTOUR, f->right + CONTOUR, f->bottom - CONTOUR, ethd__green);
-  box(s, f->left, f->top, f->right, f->bottom, (SDL_Color){0, 0, 0, 255});
-  box(s, f->start - 0.0003, f->top, f->start + 0.0003, f->bottom, ethd__grey);
+  double thick = share(s, CONTOUR), line = share(s, START_LINE);
+  const double side[ETHD_WALLS][4] = {{f->left - thick, f->top + thick, f->left, f->bottom - thick},
+                                      {f->right, f->top + thick, f->right + thick, f->bottom - thick},
+                                      {f->left, f->bottom, f->right, f->bottom - thick},
+                                      {f->left, f->top + thick, f->right, f->top}};
+  for (int i = 0; i < ETHD_WALLS; i++)
+    if (f->there[i]) box(s, side[i][0], side[i][1], side[i][2], side[i][3], ethd__green);
+  box(s, f->start.x - line, f->top, f->start.x + line, f->bottom, ethd__grey);
   if (seconds >= 0) cue(s, seconds);
   s->avatar = ethd__room_avatar(f, x);
   ethd_vec at = ethd__room_pixel(f, s->avatar);
@@ -48,5 +65,5 @@ void ethd__draw_room(ethd__screen *s, ethd_vec x, double seconds) {
 }
 
 double ethd__draw_floor(const ethd__screen *s) {
-  return ceil(ethd__room_pixel(&s->frame, (ethd_vec){s->frame.left, s->frame.bottom - CONTOUR}).y) + 1;
+  return ceil(ethd__room_pixel(&s->frame, (ethd_vec){s->frame.left, s->frame.bottom - share(s, CONTOUR)}).y) + 1;
 }

@@ -127,10 +127,10 @@ typedef struct waiting {
 
 static bool at_start(const ethd__screen *s, waiting *wait) {
   ethd_vec x = ethd__draw_finger(s);
-  double t = now(), middle = (s->frame.bottom + s->frame.top) / 2;
+  double t = now();
   double speed = ethd_vec_norm(ethd_vec_sub(x, wait->last)) / fmax(t - wait->before, 1e-3);
-  bool there =
-      fabs(x.x - s->frame.start) < ETHD_SCREEN_NEAR && fabs(x.y - middle) < ETHD_SCREEN_NEAR && speed < SETTLED;
+  bool there = fabs(x.x - s->frame.start.x) < ETHD_SCREEN_NEAR && fabs(x.y - s->frame.start.y) < ETHD_SCREEN_NEAR &&
+               speed < SETTLED;
   wait->last = x;
   wait->before = t;
   if (!there) wait->since = t;
@@ -244,7 +244,7 @@ ethd_status ethd__screen_open(ethd__screen *s, ethd__desk *desk, const ethd__sou
   const ethd__room *f = &s->frame;
   ethd_vec zero = ethd__room_pixel(f, (ethd_vec){0, 0});
   printf("screen %d x %d: x_px = %.6g + %.6g x_m, y_px = %.6g - %.6g y_m; start %.6g %.6g, wall %.6g\n", f->width,
-         f->height, zero.x, f->scale, zero.y, f->scale, f->start, (f->bottom + f->top) / 2, f->left);
+         f->height, zero.x, f->scale, zero.y, f->scale, f->start.x, f->start.y, f->left);
   fflush(stdout);
   return ETHD_OK;
 }
@@ -259,7 +259,7 @@ void ethd__screen_describe(const ethd__screen *s, char out[ETHD_MESSAGE_MAX]) {
            "window %d x %d px; display %d x %d px at %d Hz by %s, %.1f px an inch as it says; %.6g px/m drawn; start "
            "%.6g %.6g m, wall %.6g m",
            s->frame.width, s->frame.height, mode.w, mode.h, mode.refresh_rate, SDL_GetCurrentVideoDriver(), (double)dpi,
-           s->frame.scale, s->frame.start, (s->frame.bottom + s->frame.top) / 2, s->frame.left);
+           s->frame.scale, s->frame.start.x, s->frame.start.y, s->frame.left);
 }
 
 ethd__front ethd__screen_front(ethd__screen *s) {

@@ -61,7 +61,7 @@ static bool follow(ethd__screen *s, ethd__live *live, ethd_vec from) {
 static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]) {
   ethd__screen *s = self;
   ethd__live live;
-  ethd_vec from = {s->frame.start, (s->frame.bottom + s->frame.top) / 2};
+  const ethd_vec from = s->frame.start;
   bool done = false;
   ethd_status status = ethd__desk_prepare(s->desk, turn, out, message);
   if (status) return status;

@@ -5,16 +5,13 @@
 #define BEHIND 0.015 /* m of free space behind the start */
 #define SHARE 0.55   /* of the window that the free space may fill */
 
-ethd__room ethd__room_of(double wall, double start, double y, double finger, int width, int height) {
-  ethd__room f = {.width = width,
-                  .height = height,
-                  .left = wall,
-                  .right = start + finger + BEHIND,
-                  .start = start,
-                  .finger = finger};
+ethd__room ethd__room_of(const double wall[ETHD_WALLS], ethd_vec start, double finger, int width, int height) {
+  ethd__room f = {.width = width, .height = height, .left = wall[ETHD_WALL_LEFT], .start = start, .finger = finger};
+  for (int i = 0; i < ETHD_WALLS; i++) f.there[i] = !isnan(wall[i]);
+  f.right = f.there[ETHD_WALL_RIGHT] ? wall[ETHD_WALL_RIGHT] : start.x + finger + BEHIND;
   double half = 0.3 * (f.right - f.left);
-  f.bottom = y - half;
-  f.top = y + half;
+  f.bottom = f.there[ETHD_WALL_BOTTOM] ? wall[ETHD_WALL_BOTTOM] : start.y - half;
+  f.top = f.there[ETHD_WALL_TOP] ? wall[ETHD_WALL_TOP] : start.y + half;
   f.scale = SHARE * fmin(width / (f.right - f.left), height / (f.top - f.bottom));
   return f;
 }

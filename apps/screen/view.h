@@ -1,25 +1,33 @@
 /* Where things are drawn: metres of R_0 and pixels of the window, the free space and what may not leave it.
 
-      +=====================+   thick green contour: four walls
-      |                     |
-      |  <--      o    |    |   the finger's circle; the start line
-      |                     |
-      +=====================+                                           All [any], pure. */
+      +==============+   thick green contour: the scene's walls
+      |              |
+      |              |
+      | <--  o   |   |   the finger's circle; the start line
+      |              |
+      |              |
+      +==============+                                                  All [any], pure. */
 #ifndef ETHD__APPS_SCREEN_VIEW_H
 #define ETHD__APPS_SCREEN_VIEW_H
 
+#include <stdbool.h>
+
 #include "ethd/maths.h"
+
+enum { ETHD_WALL_LEFT, ETHD_WALL_RIGHT, ETHD_WALL_BOTTOM, ETHD_WALL_TOP, ETHD_WALLS };
 
 typedef struct ethd__room {
   int width, height;               /* px of the window */
   double scale;                    /* px/m */
   double left, right, bottom, top; /* m: free space */
-  double start;                    /* m: x of the start line, where the finger's centre waits */
-  double finger;                   /* m: radius of the circle */
+  ethd_vec start;                  /* m: on the start line, where the finger's centre waits */
+  bool there[ETHD_WALLS];
+  double finger; /* m: radius of the circle */
 } ethd__room;
 
-/* Returns a room with the wall at x = wall on the left and the start at x = start on its right, centred on y. */
-ethd__room ethd__room_of(double wall, double start, double y, double finger, int width, int height);
+/* Returns a room with these walls about the start, m: x of the left and right one, y of those below and above; NaN: none
+   is there. */
+ethd__room ethd__room_of(const double wall[ETHD_WALLS], ethd_vec start, double finger, int width, int height);
 
 /* Return where a point is drawn, px, y down; which point a pixel is. */
 ethd_vec ethd__room_pixel(const ethd__room *frame, ethd_vec x);

@@ -45,6 +45,9 @@ void ethd__folder_device(const ethd__protocol *p, ethd__loaded *out) {
   ethd__load(config, plant ? plant : p->plant, p->hands != ETHD_HANDS_PEOPLE, true, out);
   free(config);
   free(plant);
+  char *scene = p->scene ? find(p, p->scene) : NULL;
+  if (scene) ethd__load_scene(out, scene);
+  free(scene);
 }
 
 /* ---- the hash ---- */

@@ -46,11 +46,11 @@ static ethd_status known_sections(const ethd_ini *ini, const char *name, char *m
   for (uint32_t i = 0; i < ini->section_count; i++) {
     const ethd_ini_section *s = &ini->sections[i];
     if (!ethd__entry_section(s->name))
-      return ethd__say(
-          message, ETHD_E_UNKNOWN,
-          "%s:%d: %s: unknown section; study, device, hand, validity, statistics, outcomes, before, survey, after, "
-          "pages, words, grid are allowed",
-          name, s->line, ethd__quote(s->name, strlen(s->name), quote));
+      return ethd__say(message, ETHD_E_UNKNOWN,
+                       "%s:%d: %s: unknown section; study, device, scene, hand, validity, statistics, outcomes, "
+                       "before, survey, after, "
+                       "pages, words, grid are allowed",
+                       name, s->line, ethd__quote(s->name, strlen(s->name), quote));
   }
   return ETHD_OK;
 }
@@ -164,7 +164,7 @@ ethd_status ethd__protocol_load(const char *path, ethd__protocol *out, char mess
 }
 
 void ethd__protocol_free(ethd__protocol *p) {
-  char *own[] = {p->path, p->text, p->folder, p->name, p->config, p->plant, p->motion, p->exclusions};
+  char *own[] = {p->path, p->text, p->folder, p->name, p->config, p->plant, p->scene, p->motion, p->exclusions};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) free(own[i]);
   ethd__word_list_free(&p->strategies);
   ethd__word_list_free(&p->speeds);

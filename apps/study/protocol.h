@@ -17,6 +17,9 @@
      [device]                             [grid]                  --simulate: every combination
      config = n.ini                       contact.k_e = 1000,2500
      plant = n
+                                          [scene]
+                                          file = room.scene       in place of the configuration's
+
                                           [before], [survey], [after], [pages],
                                           [words]: see questionnaire.h
 
@@ -65,8 +68,8 @@ typedef struct ethd__axis {
 } ethd__axis;
 
 typedef struct ethd__protocol {
-  char *path, *text, *folder;           /* as it was read; relative paths start at folder */
-  char *name, *config, *plant, *motion; /* NULL where not given, but the name */
+  char *path, *text, *folder;                   /* as it was read; relative paths start at folder */
+  char *name, *config, *plant, *scene, *motion; /* NULL where not given, but the name */
   uint64_t seed;
   uint32_t participants, training, taps, attempts, rest;
   ethd__word_list strategies, speeds, primary;

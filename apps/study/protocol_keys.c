@@ -163,6 +163,7 @@ static const key_row rows[] = {
     {"study", "record", set_switch, AT(record), 0, 0, "none|all"},
     {"device", "config", set_text, AT(config), 0, 0, NULL},
     {"device", "plant", set_text, AT(plant), 0, 0, NULL},
+    {"scene", "file", set_text, AT(scene), 0, 0, NULL},
     {"hand", "source", set_choice, AT(hands), 0, 0, "simulated|recorded|people|mouse"},
     {"hand", "motion", set_text, AT(motion), 0, 0, NULL},
     {"hand", "between", set_number, AT(between), 0, 1, NULL},

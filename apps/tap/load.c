@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
+#include "settings/config_parts.h"
 #include "sim/plant.h"
 #include "tap/device.h"
 
@@ -52,20 +53,35 @@ static void load_plant(const char *plant, bool simulated, ethd__loaded *out) {
   if (simulated) ethd__sim_settings_finger(&device, &out->plant);
 }
 
-/* A configuration without a scene gets the paper's wall, as if it named it. */
-static ethd_config *with_wall(ethd_config *config, const char *path) {
-  char message[ETHD_MESSAGE_MAX], *wall = ethd__data_path("wall.scene"), *absolute = realpath(wall, NULL);
-  char *scene =
-      joined(config->text && *config->text ? "\n[scene]\nfile = " : "[scene]\nfile = ", absolute ? absolute : wall);
-  char *text = joined(config->text ? config->text : "", scene);
-  ethd_config *walled;
-  check(ethd_config_parse(text, strlen(text), path, config->folder, &walled, message), message);
-  ethd_config_free(config);
+/* Returns the text with `own` in place of its line; line 0: behind it, in a section. */
+static char *with_line(const char *text, int line, const char *own) {
+  char *out = NULL;
+  const char *after = line ? text : text + strlen(text);
+  for (int i = 1; i < line; i++) after += strcspn(after, "\n") + 1;
+  int n = asprintf(&out, "%.*s%s%s%s", (int)(after - text), text, line ? "" : "\n[scene]\n", own,
+                   after + strcspn(after, "\n"));
+  return had(n < 0 ? NULL : out);
+}
+
+void ethd__load_scene(ethd__loaded *loaded, const char *scene) {
+  ethd_config *own = loaded->config, *with;
+  const ethd_ini_key *key = ethd_ini_find(&ethd__config_whole(own)->ini, "scene", "file");
+  char message[ETHD_MESSAGE_MAX], *absolute = realpath(scene, NULL);
+  if (!absolute) ethd__fail(ETHD_EXIT_INPUT, "%s: %s", scene, strerror(errno));
+  char *value = joined("file = ", absolute), *text = with_line(own->text ? own->text : "", key ? key->line : 0, value);
+  check(ethd_config_parse(text, strlen(text), loaded->path, own->folder, &with, message), message);
+  ethd_config_free(own);
+  loaded->config = with;
   free(text);
-  free(scene);
+  free(value);
   free(absolute);
+}
+
+/* A configuration without a scene gets the paper's wall, as if it named it. */
+static void take_wall(ethd__loaded *loaded) {
+  char *wall = ethd__data_path("wall.scene");
+  ethd__load_scene(loaded, wall);
   free(wall);
-  return walled;
 }
 
 static void load_config(const char *config, const char *plant, bool plugins, ethd__loaded *out) {
@@ -77,7 +93,7 @@ static void load_config(const char *config, const char *plant, bool plugins, eth
                "p came with theirs",
                out->path, strerror(errno), plant);
   check((plugins ? ethd_config_load : ethd_config_load_received)(out->path, &out->config, message), message);
-  if (!out->config->scene) out->config = with_wall(out->config, out->path);
+  if (!out->config->scene) take_wall(out);
 }
 
 void ethd__load(const char *config, const char *plant, bool simulated, bool plugins, ethd__loaded *out) {

@@ -18,6 +18,9 @@ typedef struct ethd__loaded {
    refused; without it [device] is ignored. Exit 2 on bad input. */
 void ethd__load(const char *config, const char *plant, bool simulated, bool plugins, ethd__loaded *out);
 
+/* Gives the configuration this scene in place of its own. Exit 2 on a bad one. */
+void ethd__load_scene(ethd__loaded *loaded, const char *scene);
+
 void ethd__loaded_free(ethd__loaded *loaded);
 
 #endif

@@ -29,28 +29,35 @@ bool ethd__speed_parse(const char *word, const ethd_plant *plant, ethd__speed *o
 
 /* ---- where the wall is ---- */
 
-/* Sphere tracing: a step as long as the clearance never passes through an object. The search ends at
-   a clearance of 0. */
+#define AWAY 1e-6 /* m: the least step from a wall that is left */
+
+/* Sphere tracing: a step as long as the clearance never passes through an object. A wall behind x, such as a room's
+   right one where the reach begins, is left first. */
+int ethd__way_to_wall(const ethd_scene *scene, double radius, ethd_vec direction, double outer, ethd_vec *x,
+                      ethd_nearest *near) {
+  for (int step = 0; step < 10000 && ethd_vec_norm(*x) <= outer; step++) {
+    ethd_scene_query(scene, *x, near);
+    double clearance = near->distance - radius;
+    bool behind = ethd_vec_dot(near->n, direction) < 0;
+    if (clearance < 1e-12 && !behind) return step;
+    *x = ethd_vec_add(*x, ethd_vec_scale(behind ? fmax(fabs(clearance), AWAY) : clearance, direction));
+  }
+  return -1;
+}
+
 static ethd_status find_wall(ethd__study *study, char *message) {
   const ethd_setup *setup = &study->config->setup;
   double inner, outer;
   ethd_arm_reach(&setup->arm, &inner, &outer);
   ethd_vec x = {sqrt(fmax(0, outer * outer - ETHD_TAP_HEIGHT * ETHD_TAP_HEIGHT)), ETHD_TAP_HEIGHT};
-  for (int step = 0; step < 10000 && ethd_vec_norm(x) <= outer; step++) {
-    ethd_nearest near;
-    ethd_scene_query(study->config->scene, x, &near);
-    double clearance = near.distance - setup->ring_radius;
-    if (clearance < 1e-12) {
-      study->meet = x;
-      study->n = near.n;
-      return step ? ETHD_OK
-                  : ethd__say(message, ETHD_E_GEOMETRY,
-                              "the scene leaves no room for a movement to the left at y = %g m", ETHD_TAP_HEIGHT);
-    }
-    x.x -= clearance;
-  }
-  return ethd__say(message, ETHD_E_GEOMETRY,
-                   "the scene has no wall that the ring meets on its way to the left at y = %g m", ETHD_TAP_HEIGHT);
+  ethd_nearest near;
+  int steps = ethd__way_to_wall(study->config->scene, setup->ring_radius, (ethd_vec){-1, 0}, outer, &x, &near);
+  study->meet = x;
+  study->n = near.n;
+  if (steps > 0) return ETHD_OK;
+  return ethd__say(message, ETHD_E_GEOMETRY, "the scene %s to the left at y = %g m",
+                   steps ? "has no wall that the ring meets on its way" : "leaves no room for a movement",
+                   ETHD_TAP_HEIGHT);
 }
 
 /* Where a finger of this radius touches the wall that the ring meets. */

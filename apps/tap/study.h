@@ -52,6 +52,11 @@ typedef struct ethd__study {
    touchdowns of a movement. Refuses a scene without one, and a touch out of reach. */
 ETHD_MUST_CHECK ethd_status ethd__study_prepare(ethd__study *study, char message[ETHD_MESSAGE_MAX]);
 
+/* Moves x until a disc of this radius there meets an object. Returns in how many steps; -1: none within `outer` of the
+   origin. */
+int ethd__way_to_wall(const ethd_scene *scene, double radius, ethd_vec direction, double outer, ethd_vec *x,
+                      ethd_nearest *near);
+
 /* What runs taps under one law: controller and simulated device. */
 typedef struct ethd__stage {
   const ethd__study *study;

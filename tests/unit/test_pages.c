@@ -13,6 +13,7 @@
 static const int sizes[][2] = {{320, 200}, {640, 480}, {720, 1280}, {1366, 768}, {3840, 2160}};
 enum { SIZES = sizeof sizes / sizeof *sizes };
 
+static const double walls[ETHD_WALLS] = {0.238, 0.368, 0.165, 0.335};
 static ethd__screen screen;
 static ethd__protocol protocol;
 static SDL_Surface *pixels;
@@ -25,7 +26,7 @@ static void open_at(int width, int height) {
   ck_assert_int_eq(TTF_Init(), 0);
   for (int i = 0; i < ETHD_TEXTS; i++) ck_assert_ptr_nonnull(w->font[i] = TTF_OpenFont(font, 9));
   ethd__window_shrink(w, 1);
-  screen.frame = ethd__room_of(0.238, 0.2816, 0.25, 0.0075, width, height);
+  screen.frame = ethd__room_of(walls, (ethd_vec){0.2816, 0.25}, 0.0075, width, height);
   screen.speed = (ethd__speed){.centre = 0.4};
   screen.protocol = &protocol;
   pixels = SDL_CreateRGBSurfaceWithFormat(0, width, height, 32, SDL_PIXELFORMAT_RGB888);
@@ -222,6 +223,54 @@ TEST(test_no_text_lies_on_another) {
     check_questions();
     check_words();
     close_it();
+  }
+}
+
+/* ---- the walls ---- */
+
+static bool is_green(ethd_vec x) {
+  ethd_vec at = ethd__room_pixel(&screen.frame, x);
+  uint8_t r, g, b;
+  SDL_GetRGB(((uint32_t *)pixels->pixels)[(int)at.y * pixels->pitch / 4 + (int)at.x], pixels->format, &r, &g, &b);
+  return g == ethd__green.g && r == ethd__green.r;
+}
+
+/* The room is the scene's: a wall is green where there is one, and only there. */
+TEST(test_walls_are_the_scenes) {
+  static const struct {
+    const char *text;
+    double left, right, bottom, top;
+    bool all;
+  } cases[] = {{"[scene]\nfile = room.scene\n", 0.238, 0.368, 0.165, 0.335, true},
+               {"[scene]\nfile = wall.scene\n", 0.238, 0.3045, 0.23005, 0.26995, false}};
+  for (size_t i = 0; i < 2; i++) {
+    char message[ETHD_MESSAGE_MAX];
+    ethd__desk desk = {.study = {.plant = {.start = 0.0315, .finger_radius = 0.008}}};
+    ethd__loaded loaded = {0};
+    ck_assert_msg(
+        !ethd_config_parse(cases[i].text, strlen(cases[i].text), "test", "apps/config", &loaded.config, message), "%s",
+        message);
+    desk.loaded = &loaded;
+    desk.study.config = loaded.config;
+    ck_assert_msg(!ethd__study_prepare(&desk.study, message), "%s", message);
+    open_at(1024, 768);
+    screen.desk = &desk;
+    ethd__draw_fit(&screen);
+    const ethd__room *f = &screen.frame;
+    ck_assert_double_eq_tol(f->left, cases[i].left, 1e-12);
+    ck_assert_double_eq_tol(f->right, cases[i].right, 1e-12);
+    ck_assert_double_eq_tol(f->bottom, cases[i].bottom, 1e-12);
+    ck_assert_double_eq_tol(f->top, cases[i].top, 1e-12);
+    ck_assert(f->start.y == 0.25);
+    ethd__draw_room(&screen, f->start, -1);
+    check_frame("walls", 0);
+    double x = (f->left + f->start.x) / 2, y = f->start.y + 0.01, out = 0.03 * (f->top - f->bottom);
+    ck_assert(is_green((ethd_vec){f->left - out, y}) && !is_green((ethd_vec){x, y}));
+    ck_assert_int_eq(is_green((ethd_vec){f->right + out, y}), cases[i].all);
+    ck_assert_int_eq(is_green((ethd_vec){x, f->bottom - out}), cases[i].all);
+    ck_assert_int_eq(is_green((ethd_vec){x, f->top + out}), cases[i].all);
+    close_it();
+    ethd_config_free(loaded.config);
   }
 }
 

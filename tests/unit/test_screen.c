@@ -6,7 +6,9 @@
 #include "unit/draw.h"
 #include "unit/suite.h"
 
-static ethd__room room(void) { return ethd__room_of(0.238, 0.2816, 0.25, 0.0075, 1280, 720); }
+static const double walls[ETHD_WALLS] = {0.238, (double)NAN, (double)NAN, (double)NAN};
+
+static ethd__room room(void) { return ethd__room_of(walls, (ethd_vec){0.2816, 0.25}, 0.0075, 1280, 720); }
 
 static void inside(const ethd__room *r, ethd_vec x) {
   ethd_vec a = ethd__room_avatar(r, x);
@@ -30,7 +32,7 @@ TEST(test_stays_inside) {
 TEST(test_pixels) {
   static const int sizes[][2] = {{1280, 720}, {320, 200}, {720, 1280}, {16384, 300}};
   for (int i = 0; i < 4; i++) {
-    ethd__room r = ethd__room_of(0.238, 0.2816, 0.25, 0.0075, sizes[i][0], sizes[i][1]);
+    ethd__room r = ethd__room_of(walls, (ethd_vec){0.2816, 0.25}, 0.0075, sizes[i][0], sizes[i][1]);
     ethd_vec low = ethd__room_pixel(&r, (ethd_vec){r.left, r.bottom}),
              high = ethd__room_pixel(&r, (ethd_vec){r.right, r.top});
     ck_assert(low.x > 0 && high.x < sizes[i][0] && high.y > 0 && low.y < sizes[i][1] && high.y < low.y);
