@@ -224,7 +224,7 @@ refuse 'bad.study:2: hand.motion: stands there without' '[hand]\nmotion = x\n'
 refuse 'hand.source: recorded needs' '[hand]\nsource = recorded\n'
 refuse 'no_such_folder: no folder' '[hand]\nsource = recorded\nmotion = no_such_folder\n'
 refuse 'bad.study:2: grid.contact.k: ' '[grid]\ncontact.k = 1\n' --simulate 2
-refuse 'bad.study:2: grid.contact.k_e: .*found -1' '[grid]\ncontact.k_e = 2500,-1\n' --simulate 2
+refuse 'bad.study:2: grid.contact.k_e: .*found "-1"' '[grid]\ncontact.k_e = 2500,-1\n' --simulate 2
 refuse 'a session has no grid' '[grid]\ncontact.k_e = 1000\n'
 refuse 'nothing.ini: No such' '[device]\nconfig = ./nothing.ini\n'
 refuse 'none.scene: No such' '[scene]\nfile = ./none.scene\n'
