@@ -10,8 +10,8 @@
 #include "cli/cli.h"
 #include "text/text.h"
 
-static const ethd__bench *const benches[] = {&ethd__bench_tick,       &ethd__bench_scene,      &ethd__bench_plant,
-                                             &ethd__bench_estimators, &ethd__bench_kinematics, NULL};
+static const bench *const benches[] = {&bench_tick,       &bench_scene,      &bench_plant,
+                                       &bench_estimators, &bench_kinematics, NULL};
 
 static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "folder of the CSV files (.)", 0},
@@ -29,7 +29,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
   case 'o': arg.folder = text; return 0;
   case 'q': arg.quick = 1; return 0;
-  case 'a': ethd__bench_about(text); return 0;
+  case 'a': bench_about(text); return 0;
   case ARGP_KEY_ARG:
     if (arg.what) argp_error(state, "\"%s\": one WHAT at a time", text);
     arg.what = text;
@@ -48,7 +48,7 @@ static void find_peers(void) {
   char *tests = ethd__path_folder(program);
   snprintf(folder, sizeof folder, "%s/../peers", tests ? tests : ".");
   free(tests);
-  ethd__bench_peers_in(folder);
+  bench_peers_in(folder);
 }
 
 int main(int argc, char **argv) {
@@ -58,7 +58,7 @@ int main(int argc, char **argv) {
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   find_peers();
-  for (const ethd__bench *const *b = benches; *b; b++) {
+  for (const bench *const *b = benches; *b; b++) {
     if (strcmp(arg.what, "all") && strcmp(arg.what, (*b)->name)) continue;
     if (known++) printf("\n");
     (*b)->run(arg.folder, arg.quick);

@@ -23,7 +23,7 @@ for what in fits filters velocity kinematics; do
   grep -v '^#' "$folder/$what.csv" | awk -F, 'NR == 1 { n = NF } NF != n { exit 1 } END { exit NR < 4 }' ||
     fail "$what.csv isn't a table"
   command -v gnuplot >/dev/null || continue
-  gnuplot -e "in='$folder/$what.csv'; out='$folder/$what.png'" tests/picture.gp tests/bench/$what.gp 2>"$folder/said" || fail "$what: $(cat "$folder/said")"
+  gnuplot -e "in='$folder/$what.csv'; out='$folder/$what.png'" tests/picture.gp tests/bench/race.gp 2>"$folder/said" || fail "$what: $(cat "$folder/said")"
   [ "$(wc -c <"$folder/$what.png")" -gt 5000 ] || fail "$what.png is empty"
 done
 

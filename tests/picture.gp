@@ -1,5 +1,5 @@
-# What the pictures of bench and stress have in common. A picture's own file follows, and is enough with its table:
-#   gnuplot -e "in='NAME.csv'; out='NAME.png'" tests/picture.gp tests/bench/NAME.gp
+# What the pictures of bench have in common. A picture's own file, or race.gp, follows:
+#   gnuplot -e "in='NAME.csv'; out='NAME.png'" tests/picture.gp tests/bench/race.gp
 if (!exists("in") || !exists("out")) { print "picture.gp: set in and out"; exit status 2 }
 set datafile separator comma
 set datafile columnheaders

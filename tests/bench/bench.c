@@ -19,7 +19,7 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-double ethd__bench_clock_cost(void) {
+double bench_clock_cost(void) {
   enum { MANY = 10001 };
   static double cost[MANY];
   for (int i = 0; i < MANY; i++) {
@@ -32,26 +32,26 @@ double ethd__bench_clock_cost(void) {
 
 /* ---- races ---- */
 
-volatile double ethd__bench_sink;
+volatile double bench_sink;
 
 #define TURN 2e5 /* ns */
 
 enum { TURNS_MAX = 20000, ENTRIES_MAX = 64 };
 
-static double turn(const ethd__bench_entry *e, int repeats) {
+static double turn(const bench_entry *e, int repeats) {
   int64_t start = ethd__clock_now();
   for (int i = 0; i < repeats; i++) e->work(e->data);
   return (double)(ethd__clock_now() - start);
 }
 
 /* Doubles the repeats until a turn is long enough. */
-static int repeats_of(const ethd__bench_entry *e) {
+static int repeats_of(const bench_entry *e) {
   int repeats = 1;
   while (turn(e, repeats) < TURN / 2 && repeats < 1 << 24) repeats *= 2;
   return repeats;
 }
 
-void ethd__bench_race(ethd__bench_entry *entries, size_t count, double seconds) {
+void bench_race(bench_entry *entries, size_t count, double seconds) {
   int repeats[ENTRIES_MAX], turns = (int)fmin(TURNS_MAX, fmax(5, 1e9 * seconds / TURN));
   double *ns = malloc(count * (size_t)turns * sizeof *ns);
   if (!ns || count > ENTRIES_MAX) ethd__fail(ETHD_EXIT_FAILED, "no room for a race");
@@ -66,12 +66,12 @@ void ethd__bench_race(ethd__bench_entry *entries, size_t count, double seconds) 
   free(ns);
 }
 
-ethd__bench_times ethd__bench_percentiles(double *ns, size_t count) {
+bench_times bench_percentiles(double *ns, size_t count) {
   double sum = 0;
   qsort(ns, count, sizeof *ns, ascending);
   for (size_t i = 0; i < count; i++) sum += ns[i];
-  ethd__bench_times t = {sum / (double)count, ns[count / 2], ns[count - 1 - count / 100], ns[count - 1 - count / 1000],
-                         ns[count - 1]};
+  bench_times t = {sum / (double)count, ns[count / 2], ns[count - 1 - count / 100], ns[count - 1 - count / 1000],
+                   ns[count - 1]};
   return t;
 }
 
@@ -79,9 +79,9 @@ ethd__bench_times ethd__bench_percentiles(double *ns, size_t count) {
 
 static const char *peers_folder;
 
-void ethd__bench_peers_in(const char *folder) { peers_folder = folder; }
+void bench_peers_in(const char *folder) { peers_folder = folder; }
 
-const void *ethd__bench_peer(const char *name, const char *symbol) {
+const void *bench_peer(const char *name, const char *symbol) {
   char path[4096];
   snprintf(path, sizeof path, "%s/%s.so", peers_folder, name);
   void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
@@ -110,11 +110,11 @@ static void processor(char *text, size_t room) {
 
 static const char *about_all = "";
 
-void ethd__bench_about(const char *text) { about_all = text; }
+void bench_about(const char *text) { about_all = text; }
 
 static ethd_replace table; /* the question that is being answered has one */
 
-FILE *ethd__bench_csv(const char *folder, const char *name, const char *about, const char *header) {
+FILE *bench_csv(const char *folder, const char *name, const char *about, const char *header) {
   char path[4096], cpu[256], message[ETHD_MESSAGE_MAX];
   snprintf(path, sizeof path, "%s/%s.csv", folder, name);
   if (ethd_replace_begin(path, &table, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
@@ -127,9 +127,17 @@ FILE *ethd__bench_csv(const char *folder, const char *name, const char *about, c
   return f;
 }
 
-void ethd__bench_close(void) {
+void bench_row(FILE *csv, const char *panel, const char *method, double ns, double error) {
+  fprintf(csv, "%s,%s,%.17g,%.17g\n", panel, method, ns, error);
+}
+
+void bench_close(void) {
   char message[ETHD_MESSAGE_MAX];
   if (ethd_replace_commit(&table, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
 }
 
-const char *ethd__bench_verdict(int met) { return met ? "met" : "MISSED"; }
+const char *bench_verdict(int met) { return met ? "met" : "MISSED"; }
+
+void bench_goal(const char *what, double value, double most, const char *unit) {
+  printf("  goal: %-52s <= %-5g %-11s %.4g, %s\n", what, most, unit, value, bench_verdict(value <= most));
+}

@@ -12,8 +12,8 @@ command -v gnuplot >/dev/null || { echo "no gnuplot: no pictures"; exit 0; }
 echo
 echo "pictures, each beside its CSV:"
 for csv in "$out"/*.csv; do
-  what=$(basename "$csv" .csv)
-  [ -f "$here/$what.gp" ] || continue
-  (cd "$out" && gnuplot -e "in='$what.csv'; out='$what.png'" "$here/../picture.gp" "$here/$what.gp")
+  what=$(basename "$csv" .csv) gp=$here/race.gp
+  [ -f "$here/$what.gp" ] && gp=$here/$what.gp
+  (cd "$out" && gnuplot -e "in='$what.csv'; out='$what.png'" "$here/../picture.gp" "$gp")
   echo "  $out/$what.png"
 done

@@ -2,11 +2,11 @@
 #include "bench/bench.h"
 
 static void run(const char *folder, int quick) {
-  ethd__bench_fits(folder, quick);
+  bench_fits(folder, quick);
   printf("\n");
-  ethd__bench_filters(folder, quick);
+  bench_filters(folder, quick);
   printf("\n");
-  ethd__bench_velocity(folder, quick);
+  bench_velocity(folder, quick);
 }
 
-const ethd__bench ethd__bench_estimators = {"estimators", run};
+const bench bench_estimators = {"estimators", run};

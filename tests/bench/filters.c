@@ -120,22 +120,16 @@ static void work(void *data) {
 
 static void race(contender *list, size_t count, const ethd__track *track, double seconds, double *ns) {
   timed t[8];
-  ethd__bench_entry entries[8];
+  bench_entry entries[8];
   for (size_t i = 0; i < count; i++) {
     t[i] = (timed){list[i], track};
-    entries[i] = (ethd__bench_entry){list[i].name, work, &t[i], (double)track->count, 0};
+    entries[i] = (bench_entry){list[i].name, work, &t[i], (double)track->count, 0};
   }
-  ethd__bench_race(entries, count, seconds);
+  bench_race(entries, count, seconds);
   for (size_t i = 0; i < count; i++) ns[i] = entries[i].ns;
 }
 
 /* ---- one latency ---- */
-
-static FILE *csv;
-
-static void row(const char *set, double latency, const contender *c, double ns, double error) {
-  fprintf(csv, "%s,%.17g,%s,%.17g,%.17g\n", set, 1e3 * latency, c->name, ns, 1e3 * error);
-}
 
 /* Beside the filters: two readings, and the peer. */
 enum { RUNNERS = ETHD_FILTER_COUNT + 2 };
@@ -179,79 +173,50 @@ static void gather(field *f, const tuning *t, const ethd__peer_filter *peer) {
       (contender){peer->name, peer->work, peer->create(ETHD__TRACK_PERIOD, ca[0], ca[1], ETHD__TRACK_NOISE)};
 }
 
-static int by_error(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-/* Prints a ranking such as "ca < cv < hold". */
-static void print_ranking(const field *f, const double *errors, size_t count) {
-  double sorted[RUNNERS];
-  memcpy(sorted, errors, count * sizeof *sorted);
-  qsort(sorted, count, sizeof *sorted, by_error);
-  for (size_t i = 0; i < count; i++)
-    for (size_t k = 0; k < count; k++)
-      if (errors[k] == sorted[i]) printf("%s%s", i ? " < " : "", f->list[k].name);
-}
-
-static void print_errors(const char *set, double latency, const double *errors, size_t count) {
-  printf("  %-22s %4.0f ms", set, 1e3 * latency);
-  for (size_t i = 0; i < count; i++) printf(" %12.4f", 1e3 * errors[i]);
+static void compare(FILE *csv, const field *f, const char *set, double latency, const ethd__tracks *sets, size_t count,
+                    const double *ns, double *errors) {
+  char panel[64];
+  snprintf(panel, sizeof panel, "%s at %.0f ms: error in m", set, 1e3 * latency);
+  printf("  %-36s", panel);
+  for (size_t i = 0; i < f->count; i++) {
+    errors[i] = error_of(&f->list[i], sets, count);
+    bench_row(csv, panel, f->list[i].name, ns[i], errors[i]);
+    printf(" %12.4f", 1e3 * errors[i]);
+  }
   printf("  %5.1f %%\n", 100 * (1 - errors[CA] / errors[CV]));
 }
 
-static void compare(const field *f, const char *set, double latency, const ethd__tracks *sets, size_t count,
-                    const double *ns, double *errors) {
-  for (size_t i = 0; i < f->count; i++) {
-    errors[i] = error_of(&f->list[i], sets, count);
-    row(set, latency, &f->list[i], ns[i], errors[i]);
-  }
-  print_errors(set, latency, errors, f->count);
-}
-
-static int one_latency(int l, double seconds, const ethd__peer_filter *peer) {
+static void one_latency(FILE *csv, int l, double seconds, const ethd__peer_filter *peer) {
   double latency = latencies[l], ns[RUNNERS], errors[RUNNERS];
   ethd__tracks reaches = ethd__tracks_reaches(REACHES, latency), recorded[SETS_MAX];
   size_t sets = ethd__tracks_recorded(latency, recorded, SETS_MAX);
   field f;
   gather(&f, tunings[l], peer);
   race(f.list, f.count, &reaches.at[0], seconds, ns);
-  if (l == 0) {
-    printf("  %-22s %7s", "rms error, mm", "");
-    for (size_t i = 0; i < f.count; i++) printf(" %12s", f.list[i].name);
-    printf("  ca under cv\n");
-  }
-  compare(&f, "reaches", latency, &reaches, 1, ns, errors);
-  int met = errors[CA] <= (1 - goals[l]) * errors[CV];
-  double gain = 100 * (1 - errors[CA] / errors[CV]);
-  for (size_t s = 0; s < sets; s++) compare(&f, recorded[s].name, latency, &recorded[s], 1, ns, errors);
-  if (sets) compare(&f, "all recorded", latency, recorded, sets, ns, errors);
-  printf("  %-22s %7s", "ns a tick", "");
+  printf("  %-36s", "rms error, mm");
+  for (size_t i = 0; i < f.count; i++) printf(" %12s", f.list[i].name);
+  printf("  ca under cv\n");
+  if (sets) compare(csv, &f, "all recorded", latency, recorded, sets, ns, errors);
+  compare(csv, &f, "reaches", latency, &reaches, 1, ns, errors);
+  printf("  %-36s", "ns a tick");
   for (size_t i = 0; i < f.count; i++) printf(" %12.1f", ns[i]);
-  printf("\n");
-  if (sets) {
-    printf("  ranking on all recorded: ");
-    print_ranking(&f, errors, PEER);
-    printf("\n");
-  }
-  printf("  goal: ca at least %.0f %% under cv on reaches at %.0f ms: %.1f %%, %s\n", 100 * goals[l], 1e3 * latency,
-         gain, ethd__bench_verdict(met));
+  double gain = 1 - errors[CA] / errors[CV];
+  printf("\n  goal: ca at least %.0f %% under cv on reaches at %.0f ms: %.1f %%, %s\n", 100 * goals[l], 1e3 * latency,
+         100 * gain, bench_verdict(gain >= goals[l]));
+  if (!sets && l == 0) printf("SKIP: recorded movements: none in ETHD_MOTION_DIR\n");
   if (peer) peer->destroy(f.list[PEER].self);
   ethd__tracks_free(&reaches);
   for (size_t s = 0; s < sets; s++) ethd__tracks_free(&recorded[s]);
-  return (int)sets;
 }
 
-void ethd__bench_filters(const char *folder, int quick) {
+void bench_filters(const char *folder, int quick) {
   printf("finger filters: readings at 300 Hz with 0.1 mm of noise, output every ms\n");
-  const ethd__peer_filter *peer = ethd__bench_peer("eigen", "peer_filter");
-  csv = ethd__bench_csv(folder, "filters",
-                        "# simulated readings at 300 Hz, noise 0.1 mm (sd, each axis); error rms over "
-                        "ticks of 1 ms and both axes\n"
-                        "# reaches: 40 of minimum jerk, 0.5 to 1.1 m/s; each filter tuned to them\n",
-                        "set,latency_ms,method,time_ns,error_rms_mm");
-  int sets = 0;
-  for (int l = 0; l < LATENCIES; l++) sets = one_latency(l, quick ? 0.1 : 1, peer);
-  if (!sets) printf("SKIP: recorded movements: none in ETHD_MOTION_DIR\n");
-  ethd__bench_close();
+  const ethd__peer_filter *peer = bench_peer("eigen", "peer_filter");
+  FILE *csv =
+      bench_csv(folder, "filters",
+                "# simulated readings at 300 Hz, noise 0.1 mm (sd, each axis); error: m, rms over ticks of 1 ms\n"
+                "# and both axes; reaches: 40 of minimum jerk, 0.5 to 1.1 m/s; each filter tuned to them\n",
+                BENCH_RACE);
+  for (int l = 0; l < LATENCIES; l++) one_latency(csv, l, quick ? 0.1 : 1, peer);
+  bench_close();
 }

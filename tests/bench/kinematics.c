@@ -104,35 +104,35 @@ static void run(const char *folder, int quick) {
   make_places(&serial);
   make_places(&parallel);
   libm = kdl = serial;
-  ethd__bench_entry entries[] = {{"libethd serial", ours, &serial, PLACES, 0},
-                                 {"libethd parallel", ours, &parallel, PLACES, 0},
-                                 {"plain C with libm serial", plain, &libm, PLACES, 0},
-                                 {NULL, peer, &kdl, PLACES, 0}};
+  bench_entry entries[] = {{"libethd serial", ours, &serial, PLACES, 0},
+                           {"libethd parallel", ours, &parallel, PLACES, 0},
+                           {"plain C with libm serial", plain, &libm, PLACES, 0},
+                           {NULL, peer, &kdl, PLACES, 0}};
   size_t count = 3;
   printf("kinematics: FK, J, J^T f and J^-1 e of a planar arm; error over the largest value, against "
          "long double\n");
-  kdl.peer = ethd__bench_peer("kdl", "peer_kinematics");
+  kdl.peer = bench_peer("kdl", "peer_kinematics");
   if (kdl.peer) {
     kdl.peer_self = kdl.peer->create(LINK, LINK);
     entries[count++].name = kdl.peer->name;
   }
-  ethd__bench_race(entries, count, quick ? 0.3 : 3);
-  FILE *csv = ethd__bench_csv(folder, "kinematics",
-                              "# planar arm, links 0.25 m: FK, J, J^T f, J^-1 e at 1024 places\n"
-                              "# error: the largest over outputs and places, over the output's largest value\n",
-                              "method,time_ns,error_relative,times_ours");
+  bench_race(entries, count, quick ? 0.3 : 3);
+  FILE *csv = bench_csv(folder, "kinematics",
+                        "# planar arm, links 0.25 m: FK, J, J^T f, J^-1 e at 1024 places\n"
+                        "# error: the largest over outputs and places, over the output's largest value\n",
+                        BENCH_RACE);
   printf("  %-28s %8s %10s %12s\n", "", "ns", "error", "times ours");
   for (size_t i = 0; i < count; i++) {
     double error = error_of(entries[i].data), times = entries[i].ns / entries[0].ns;
     printf("  %-28s %8.1f %10.1e %12.1f\n", entries[i].name, entries[i].ns, error, times);
-    fprintf(csv, "%s,%.17g,%.17g,%.17g\n", entries[i].name, entries[i].ns, error, times);
+    bench_row(csv, "error over the largest value", entries[i].name, entries[i].ns, error);
   }
   if (kdl.peer) {
     double times = entries[3].ns / entries[0].ns;
-    printf("  goal: KDL takes %.0f times as long: %.1f, %s\n", GOAL, times, ethd__bench_verdict(times >= GOAL));
+    printf("  goal: KDL takes %.0f times as long: %.1f, %s\n", GOAL, times, bench_verdict(times >= GOAL));
     kdl.peer->destroy(kdl.peer_self);
   }
-  ethd__bench_close();
+  bench_close();
 }
 
-const ethd__bench ethd__bench_kinematics = {"kinematics", run};
+const bench bench_kinematics = {"kinematics", run};

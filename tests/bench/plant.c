@@ -148,7 +148,7 @@ static void enter_all(const ethd__problem *problem) {
   for (double h = 200e-6; h > 10e-6; h /= 2) enter(problem, "libethd with fixed steps", h)->fixed = 1;
   static const char *const libraries[] = {"gsl", "sundials", "odeint", "mujoco"};
   for (int l = 0; l < 4; l++) {
-    const ethd__peer_ode *peer = ethd__bench_peer(libraries[l], "peer_ode");
+    const ethd__peer_ode *peer = bench_peer(libraries[l], "peer_ode");
     for (; peer && peer->name; peer++)
       for (double t = peer->loosest; t > 0.7 * peer->tightest; t /= peer->ratio) enter_peer(problem, peer, t);
   }
@@ -176,7 +176,7 @@ static void goal(const char *peer, const char *spoken, double error, double time
     printf("  goal: %s at %.0e m takes %.1f times as long: no such point\n", spoken, error, times);
   else
     printf("  goal: %s at %.0e m takes %.1f times as long: %.1f, %s\n", spoken, error, times, ratio,
-           ethd__bench_verdict(ratio >= times));
+           bench_verdict(ratio >= times));
 }
 
 /* Reports what halving a fixed step gains, as the mean of halvings. Single ones scatter, because a contact changes or
@@ -194,7 +194,7 @@ static void order(void) {
     }
   gain = exp(gain / halvings);
   printf("  goal: halving the step cuts the error 14 times through contacts: %.1f (single ones %.1f to %.1f), %s\n",
-         gain, least, most, ethd__bench_verdict(gain >= 14));
+         gain, least, most, bench_verdict(gain >= 14));
 }
 
 /* ---- all ---- */
@@ -223,21 +223,20 @@ static void leave(integrator *c) {
 }
 
 static void write_all(const char *folder, ethd__mark *truth, const ethd__problem *problem) {
-  FILE *csv =
-      ethd__bench_csv(folder, "plant",
-                      "# plant n alone, torques of taps recorded in closed loop; error: largest distance of ring\n"
-                      "# or finger from GSL's rk8pd with events at 1e-14; CPU time per simulated second\n",
-                      "method,setting,error_m,time_s");
+  FILE *csv = bench_csv(folder, "plant",
+                        "# plant n alone, torques of taps recorded in closed loop; error: largest distance of ring\n"
+                        "# or finger from GSL's rk8pd with events at 1e-14; CPU time per simulated second\n",
+                        BENCH_RACE);
   for (int i = 0; i < field.count; i++) {
     integrator *c = &field.all[i];
     c->error = ethd__problem_error(problem, c->marks, truth);
     printf("  %-26s %8.1e  %9.2e m %10.1f us/s\n", c->name, c->setting, c->error, 1e6 * c->time);
-    fprintf(csv, "\"%s\",%.17g,%.17g,%.17g\n", c->name, c->setting, c->error, c->time);
+    bench_row(csv, "ring or finger: error in m over a simulated second", c->name, 1e9 * c->time, c->error);
   }
 }
 
 static void run(const char *folder, int quick) {
-  const ethd__peer_ode *gsl = ethd__bench_peer("gsl", "peer_ode");
+  const ethd__peer_ode *gsl = bench_peer("gsl", "peer_ode");
   if (!gsl) {
     printf("plant: SKIP: without GSL (Debian: libgsl-dev) there is no reference\n");
     return;
@@ -269,7 +268,7 @@ static void run(const char *folder, int quick) {
   for (int i = 0; i < field.count; i++) leave(&field.all[i]);
   free(truth);
   ethd__problem_free(&problem);
-  ethd__bench_close();
+  bench_close();
 }
 
-const ethd__bench ethd__bench_plant = {"plant", run};
+const bench bench_plant = {"plant", run};

@@ -1,152 +1,193 @@
 /* Scene queries beside other libraries': the nearest of n segments, its distance, point and normal. */
-#include "bench/scene_race.h"
-
 #include <math.h>
 
+#include "bench/bench.h"
+#include "bench/scene_world.h"
 #include "cli/cli.h"
+#include "clock.h"
 
-static const char *name_of(const ethd__contest *t, int i) { return t->contenders[i].name; }
+enum { OURS, LOOSE, EMBREE, CGAL, CONTENDERS };
+enum { SIZES = 6, LAST = SIZES - 1 };
+static const size_t sizes[SIZES] = {1, 10, 100, 1000, 10000, 100000};
 
-static void write_times(FILE *csv, const ethd__bench_times *t, double mean) {
-  fprintf(csv, ",%.17g,%.17g,%.17g,%.17g,%.17g", mean, t->median, t->p99, t->p999, t->max);
+/* One contender's figures in one world for one order of queries; times in ns. */
+typedef struct scene_result {
+  int there;
+  double mean, build, bytes, apart;
+  bench_times each; /* query by query, each at its best of the rounds */
+} scene_result;
+
+static ethd__scene_contender contenders[CONTENDERS];
+static scene_result results[ETHD__WORLDS][SIZES][ETHD__ASKS][CONTENDERS];
+static ethd_vec points[2][BENCH_POINTS]; /* a path; anywhere */
+
+/* ---- one world ---- */
+
+typedef struct queries {
+  ethd__scene_contender *contender;
+  ethd__ask ask;
+  const ethd_vec *points;
+} queries;
+
+static void ask_all(void *data) {
+  const queries *q = data;
+  double sum = 0;
+  for (int k = 0; k < BENCH_POINTS; k++) sum += ethd__contender_nearest(q->contender, q->ask, q->points[k]);
+  bench_sink = sum;
 }
 
-static void write_csv(const ethd__contest *t, FILE *csv) {
+static bench_times each_query(queries *q, int rounds) {
+  static double ns[BENCH_POINTS];
+  const double clock = bench_clock_cost();
+  const int64_t enough = ethd__clock_now() + 200000000; /* for slow ones */
+  for (int k = 0; k < BENCH_POINTS; k++) ns[k] = INFINITY;
+  for (int r = 0; r < rounds && (r == 0 || ethd__clock_now() < enough); r++)
+    for (int k = 0; k < BENCH_POINTS; k++) {
+      int64_t start = ethd__clock_now();
+      bench_sink = ethd__contender_nearest(q->contender, q->ask, q->points[k]);
+      ns[k] = fmin(ns[k], fmax(0, (double)(ethd__clock_now() - start) - clock));
+    }
+  return bench_percentiles(ns, BENCH_POINTS);
+}
+
+/* Returns the largest difference between the distances of two contenders. */
+static double apart(const queries *a, const queries *b) {
+  double most = 0;
+  for (int k = 0; k < BENCH_POINTS; k++) {
+    double one = ethd__contender_nearest(a->contender, a->ask, a->points[k]);
+    double other = ethd__contender_nearest(b->contender, b->ask, b->points[k]);
+    if (!(one == other)) most = fmax(most, fabs(one - other));
+  }
+  return most;
+}
+
+static void ask_in(ethd__ask ask, scene_result *all, int quick) {
+  queries q[CONTENDERS];
+  bench_entry entries[CONTENDERS];
+  size_t count = 0;
+  for (int i = 0; i < CONTENDERS; i++) {
+    q[i] = (queries){&contenders[i], ask, points[ask == ETHD__COLD]};
+    if (all[i].there) entries[count++] = (bench_entry){"", ask_all, &q[i], BENCH_POINTS, 0};
+  }
+  bench_race(entries, count, quick ? 1e-3 : 5e-3); /* 5 and 25 turns, each over all points */
+  for (size_t i = 0; i < count; i++) {
+    scene_result *r = &all[(queries *)entries[i].data - q];
+    r->mean = entries[i].ns;
+    r->each = each_query(entries[i].data, quick ? 4 : 12);
+    r->apart = apart(entries[i].data, &q[OURS]);
+  }
+}
+
+static void run_world(ethd__world_kind kind, int size, int quick) {
+  ethd__world world;
+  ethd__world_create(kind, sizes[size], &world);
+  contenders[OURS].chain = kind == ETHD__CONTOUR;
+  for (int i = 0; i < CONTENDERS; i++) {
+    int there = i == OURS || (i == LOOSE ? kind == ETHD__CONTOUR : contenders[i].peer != NULL);
+    double build = INFINITY;
+    for (int again = 0; there && again < (quick ? 2 : 5); again++) {
+      if (again) ethd__contender_destroy(&contenders[i]);
+      build = fmin(build, ethd__contender_create(&contenders[i], &world));
+    }
+    for (int ask = 0; there && ask < ETHD__ASKS; ask++)
+      results[kind][size][ask][i] =
+          (scene_result){.there = 1, .build = build, .bytes = (double)ethd__contender_bytes(&contenders[i])};
+  }
+  for (int ask = 0; ask < ETHD__ASKS; ask++) ask_in((ethd__ask)ask, results[kind][size][ask], quick);
+  for (int i = 0; i < CONTENDERS; i++)
+    if (results[kind][size][0][i].there) ethd__contender_destroy(&contenders[i]);
+  ethd__world_destroy(&world);
+}
+
+/* ---- output ---- */
+
+static void write_csv(FILE *csv) {
   for (int kind = 0; kind < ETHD__WORLDS; kind++)
     for (int size = 0; size < SIZES; size++)
       for (int ask = 0; ask < ETHD__ASKS; ask++)
         for (int i = 0; i < CONTENDERS; i++) {
-          const ethd__race_result *r = &t->results[kind][size][ask][i];
-          if (!r->there) continue;
-          fprintf(csv, "%s,%zu,%s,%s", ethd__world_names[kind], ethd__contest_sizes[size], ethd__ask_names[ask],
-                  name_of(t, i));
-          write_times(csv, &r->each, r->mean);
-          if (size < CALM_FROM)
-            fprintf(csv, ",,,,,");
-          else
-            write_times(csv, &r->calm, r->calm.mean);
-          fprintf(csv, ",%.17g,", r->build);
-          if (r->bytes > 0) fprintf(csv, "%.17g", r->bytes);
-          fprintf(csv, ",%.17g\n", r->apart);
+          const scene_result *r = &results[kind][size][ask][i];
+          if (r->there)
+            fprintf(csv, "%s,%zu,%s,%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", ethd__world_names[kind],
+                    sizes[size], ethd__ask_names[ask], contenders[i].name, r->mean, r->each.p99, r->each.p999,
+                    r->each.max, r->build, r->bytes, r->apart);
         }
 }
 
-static void print_short(double ns) {
-  if (ns < 999.5)
-    printf("%9.3g", ns);
-  else if (ns < 999.5e3)
-    printf("%7.3g us", 1e-3 * ns);
-  else
-    printf("%7.3g ms", 1e-6 * ns);
-}
-
-static void print_question(const ethd__contest *t, int kind, int ask) {
-  printf("  %s, %s\n  %-18s", ethd__world_names[kind], ethd__ask_names[ask], "segments");
-  for (int size = 0; size < SIZES; size++) printf("%9zu", ethd__contest_sizes[size]);
-  printf(" |%9s%9s%9s |%9s%9s\n", "p99", "p99.9", "max", "cold 50%", "p99");
+static void print_question(int kind, int ask) {
+  printf("  %s, %s, ns\n  %-18s", ethd__world_names[kind], ethd__ask_names[ask], "segments");
+  for (int size = 0; size < SIZES; size++) printf("%9zu", sizes[size]);
+  printf(" |%9s%9s%9s\n", "p99", "p99.9", "max");
   for (int i = 0; i < CONTENDERS; i++) {
-    const ethd__race_result(*r)[ETHD__ASKS][CONTENDERS] = t->results[kind];
-    if (!r[SIZES - 1][ask][i].there) continue;
-    printf("    %-16s", name_of(t, i));
-    for (int size = 0; size < SIZES; size++) print_short(r[size][ask][i].mean);
-    const ethd__race_result *last = &r[SIZES - 1][ask][i];
-    printf(" |");
-    print_short(last->each.p99);
-    print_short(last->each.p999);
-    print_short(last->each.max);
-    printf(" |");
-    print_short(last->calm.median);
-    print_short(last->calm.p99);
-    printf("\n");
+    const bench_times *each = &results[kind][LAST][ask][i].each;
+    if (!results[kind][LAST][ask][i].there) continue;
+    printf("    %-16s", contenders[i].name);
+    for (int size = 0; size < SIZES; size++) printf("%9.3g", results[kind][size][ask][i].mean);
+    printf(" |%9.3g%9.3g%9.3g\n", each->p99, each->p999, each->max);
   }
 }
 
-static void print_builds(const ethd__contest *t) {
-  printf("  build of %zu, ms of processor time (MB):", ethd__contest_sizes[SIZES - 1]);
+static void print_builds(void) {
+  printf("  build of %zu, ms of processor time (MB):", sizes[LAST]);
   for (int i = 0; i < CONTENDERS; i++) {
-    const ethd__race_result *r = &t->results[i == LOOSE ? ETHD__CONTOUR : ETHD__RANDOM][SIZES - 1][0][i];
-    if (!r->there) continue;
-    printf(" %s %.0f", name_of(t, i), 1e3 * r->build);
-    if (r->bytes > 0) printf(" (%.1f)", 1e-6 * r->bytes);
+    const scene_result *r = &results[i == LOOSE ? ETHD__CONTOUR : ETHD__RANDOM][LAST][0][i];
+    if (r->there) printf(" %s %.0f (%.1f)", contenders[i].name, 1e3 * r->build, 1e-6 * r->bytes);
   }
   printf("\n");
 }
 
 /* ---- goals ---- */
 
-static void goal_ratio(const ethd__contest *t, ethd__world_kind kind, int size, ethd__ask ask, int peer, double least) {
-  const ethd__race_result *r = t->results[kind][size][ask];
+static void goal_ratio(ethd__world_kind kind, int size, ethd__ask ask, int peer, double least) {
+  const scene_result *r = results[kind][size][ask];
   if (!r[peer].there) return;
   double times = r[peer].mean / r[OURS].mean;
-  printf("  goal: %s %zu %s: %s takes %.1f times as long: %.2f, %s\n", ethd__world_names[kind],
-         ethd__contest_sizes[size], ethd__ask_names[ask], name_of(t, peer), least, times,
-         ethd__bench_verdict(times >= least));
+  printf("  goal: %s %zu %s: %s takes %.1f times as long: %.2f, %s\n", ethd__world_names[kind], sizes[size],
+         ethd__ask_names[ask], contenders[peer].name, least, times, bench_verdict(times >= least));
 }
 
-static void goal_incoherent(const ethd__contest *t) {
-  if (!t->contenders[EMBREE].peer) return;
-  for (int kind = 0; kind < ETHD__WORLDS; kind++) {
-    int met = 1;
-    printf("  goal: %s incoherent: Embree never quicker; it takes", ethd__world_names[kind]);
-    for (int size = 0; size < SIZES; size++) {
-      const ethd__race_result *r = t->results[kind][size][ETHD__COLD];
-      met &= r[EMBREE].mean >= r[OURS].mean;
-      printf(" %.2f", r[EMBREE].mean / r[OURS].mean);
-    }
-    printf(" times as long, %s\n", ethd__bench_verdict(met));
-  }
-}
-
-static void goal_most(const char *what, double found, double most, const char *unit) {
-  printf("  goal: %s at most %g %s: %.3g, %s\n", what, most, unit, found, ethd__bench_verdict(found <= most));
-}
-
-static void print_goals(const ethd__contest *t) {
-  enum { TEN = 4, HUNDRED = 5 }; /* thousands */
-  goal_ratio(t, ETHD__CONTOUR, TEN, ETHD__WARM, EMBREE, 4);
-  goal_ratio(t, ETHD__CONTOUR, TEN, ETHD__WARM, CGAL, 3);
-  goal_ratio(t, ETHD__RANDOM, TEN, ETHD__WARM, EMBREE, 1.4);
-  goal_incoherent(t);
-  const ethd__race_result *contour = &t->results[ETHD__CONTOUR][HUNDRED][ETHD__WARM][OURS];
-  const ethd__race_result *random = &t->results[ETHD__RANDOM][HUNDRED][ETHD__WARM][OURS];
-  goal_most("contour 100000 warm, p99", contour->each.p99, 500, "ns");
-  goal_most("build of 100000", 1e3 * fmax(contour->build, random->build), 36, "ms");
-  goal_most("memory of 100000", 1e-6 * fmax(contour->bytes, random->bytes), 12, "MB");
+static void judge(void) {
+  enum { TEN_THOUSAND = 4 };
+  goal_ratio(ETHD__CONTOUR, TEN_THOUSAND, ETHD__WARM, EMBREE, 4);
+  goal_ratio(ETHD__CONTOUR, TEN_THOUSAND, ETHD__WARM, CGAL, 3);
+  goal_ratio(ETHD__RANDOM, TEN_THOUSAND, ETHD__WARM, EMBREE, 1.4);
+  for (int kind = 0; kind < ETHD__WORLDS; kind++)
+    for (int size = 0; size < SIZES; size++) goal_ratio((ethd__world_kind)kind, size, ETHD__COLD, EMBREE, 1);
+  const scene_result *contour = &results[ETHD__CONTOUR][LAST][ETHD__WARM][OURS];
+  const scene_result *random = &results[ETHD__RANDOM][LAST][ETHD__WARM][OURS];
+  bench_goal("contour 100000 warm, p99", contour->each.p99, 500, "ns");
+  bench_goal("build of 100000", 1e3 * fmax(contour->build, random->build), 36, "ms");
+  bench_goal("memory of 100000", 1e-6 * fmax(contour->bytes, random->bytes), 12, "MB");
 }
 
 static void run(const char *folder, int quick) {
-  static ethd__contest t;
-  static const struct {
-    int i;
-    const char *file;
-  } peers[] = {{EMBREE, "embree"}, {CGAL, "cgal"}};
-  printf("scene: the nearest of n segments, its distance, point and normal; ns\n"
+  static const char *const files[CONTENDERS] = {[EMBREE] = "embree", [CGAL] = "cgal"};
+  printf("scene: the nearest of n segments, its distance, point and normal\n"
          "  a path at 1 kHz, up to 1 m/s: warm knows its last answer, horizon wants only what is within %g mm;\n"
-         "  incoherent: anywhere, nothing known. Best of rounds; p99 to max and cold (caches used by others): of %zu\n",
-         1e3 * ETHD__BENCH_HORIZON, ethd__contest_sizes[SIZES - 1]);
-  t.quick = quick;
-  t.contenders[OURS].name = "libethd";
-  t.contenders[LOOSE].name = "libethd loose";
-  for (size_t k = 0; k < sizeof peers / sizeof *peers; k++) {
-    ethd__scene_contender *c = &t.contenders[peers[k].i];
-    c->peer = ethd__bench_peer(peers[k].file, "peer_scene");
-    if (c->peer) c->name = c->peer->name;
+         "  incoherent: anywhere, nothing known; p99 to max: of %zu\n",
+         1e3 * BENCH_HORIZON, sizes[LAST]);
+  contenders[OURS].name = "libethd";
+  contenders[LOOSE].name = "libethd loose";
+  for (int i = EMBREE; i < CONTENDERS; i++) {
+    contenders[i].peer = bench_peer(files[i], "peer_scene");
+    if (contenders[i].peer) contenders[i].name = contenders[i].peer->name;
   }
-  ethd__contest_run(&t);
+  ethd__world_path(points[0]);
+  ethd__world_anywhere(points[1]);
   for (int kind = 0; kind < ETHD__WORLDS; kind++)
-    for (int ask = ETHD__ASKS - 1; ask >= 0; ask--) print_question(&t, kind, ask);
-  print_builds(&t);
-  print_goals(&t);
-  FILE *csv = ethd__bench_csv(
+    for (int size = 0; size < SIZES; size++) run_world((ethd__world_kind)kind, size, quick);
+  for (int kind = 0; kind < ETHD__WORLDS; kind++)
+    for (int ask = ETHD__ASKS - 1; ask >= 0; ask--) print_question(kind, ask);
+  print_builds();
+  judge();
+  FILE *csv = bench_csv(
       folder, "scene",
-      "# nearest of n segments: distance, point, normal; contour: libethd has one polyline, libethd "
-      "loose and the others n segments\n"
-      "# mean: blocks of 100 queries, each at its best of the rounds; median to max: query by query, likewise\n"
-      "# cold: 8 MB of something else used between two queries. difference: largest, from libethd's distance\n",
-      "scene,segments,mode,contender,mean_ns,median_ns,p99_ns,p999_ns,max_ns,cold_mean_ns,cold_median_ns,"
-      "cold_p99_ns,cold_p999_ns,cold_max_ns,build_s,memory_bytes,difference_m");
-  write_csv(&t, csv);
-  ethd__bench_close();
+      "# nearest of n segments: distance, point, normal; contour: libethd has one polyline, libethd loose and the\n"
+      "# others n segments; p99 to max: query by query, each at its best of the rounds\n"
+      "# difference: largest, from libethd's distance\n",
+      "scene,segments,mode,contender,mean_ns,p99_ns,p999_ns,max_ns,build_s,memory_bytes,difference_m");
+  write_csv(csv);
+  bench_close();
 }
 
-const ethd__bench ethd__bench_scene = {"scene", run};
+const bench bench_scene = {"scene", run};

@@ -46,14 +46,14 @@ void ethd__world_destroy(ethd__world *world) { free(world->segments); }
 /* ---- points ---- */
 
 void ethd__world_path(ethd_vec *points) {
-  for (int i = 0; i < ETHD__BENCH_POINTS; i++) {
+  for (int i = 0; i < BENCH_POINTS; i++) {
     double t = 1e-3 * i;
     points[i] = (ethd_vec){0.22 * sin(2 * M_PI * 0.43 * t + 0.3), 0.22 * sin(2 * M_PI * 0.571 * t)};
   }
 }
 
 void ethd__world_anywhere(ethd_vec *points) {
-  for (uint64_t i = 0; i < ETHD__BENCH_POINTS; i++)
+  for (uint64_t i = 0; i < BENCH_POINTS; i++)
     points[i] = (ethd_vec){draw(2 * i + 1000000007, -0.5, 0.5), draw(2 * i + 1000000008, -0.5, 0.5)};
 }
 
@@ -123,20 +123,20 @@ size_t ethd__contender_bytes(const ethd__scene_contender *c) {
 /* Asks as a controller does: nothing can be within the horizon until the ring has travelled the distance to it. */
 static double ours_within(ethd__scene_contender *c, ethd_vec x) {
   ethd_vec way = ethd_vec_sub(x, c->asked);
-  double left = c->clearance - ETHD__BENCH_HORIZON;
+  double left = c->clearance - BENCH_HORIZON;
   ethd_nearest nearest;
   if (left > 0 && ethd_vec_dot(way, way) < left * left) return INFINITY;
   ethd_scene_query_near(c->self, x, &c->hint, &nearest);
   c->asked = x;
   c->clearance = nearest.distance;
-  return nearest.distance <= ETHD__BENCH_HORIZON ? nearest.distance : INFINITY;
+  return nearest.distance <= BENCH_HORIZON ? nearest.distance : INFINITY;
 }
 
 double ethd__contender_nearest(ethd__scene_contender *c, ethd__ask ask, ethd_vec x) {
   ethd_nearest nearest;
   double out[3];
   if (c->peer) {
-    c->peer->nearest(c->self, &x.x, ask == ETHD__HORIZON ? ETHD__BENCH_HORIZON : INFINITY, ask != ETHD__COLD, out);
+    c->peer->nearest(c->self, &x.x, ask == ETHD__HORIZON ? BENCH_HORIZON : INFINITY, ask != ETHD__COLD, out);
     c->n = ethd_vec_scale(1 / out[0], ethd_vec_sub((ethd_vec){out[1], out[2]}, x));
     return out[0];
   }

@@ -7,7 +7,7 @@
 #include "bench/peers.h"
 #include "ethd/ethd.h"
 
-enum { ETHD__BENCH_POINTS = 20000 };
+enum { BENCH_POINTS = 20000 };
 
 typedef enum ethd__world_kind { ETHD__RANDOM, ETHD__CONTOUR, ETHD__WORLDS } ethd__world_kind;
 extern const char *const ethd__world_names[ETHD__WORLDS];
@@ -34,7 +34,8 @@ typedef struct ethd__scene_contender {
   const ethd__peer_scene *peer;
   int chain;
   void *self;
-  ethd_vec n;           /* a peer's normal */
+  ethd_vec n; /* a peer's normal */
+
   ethd_scene_hint hint; /* ours: the last answer */
   ethd_vec asked;       /* where it was asked for */
   double clearance;     /* its distance */
@@ -53,7 +54,7 @@ typedef enum ethd__ask {
 } ethd__ask;
 extern const char *const ethd__ask_names[ETHD__ASKS];
 
-#define ETHD__BENCH_HORIZON 0.04 /* m */
+#define BENCH_HORIZON 0.04 /* m */
 
 /* Returns the distance of the nearest segment, INFINITY beyond the horizon. */
 double ethd__contender_nearest(ethd__scene_contender *c, ethd__ask ask, ethd_vec x);

@@ -1,4 +1,4 @@
-/* The whole tick, recording included: hot, by law, scene and kind of finger, and by part. */
+/* The whole tick, recording included: hot, by law, scene and kind of finger. */
 #include "bench/tick.h"
 
 #include <math.h>
@@ -32,7 +32,7 @@ enum { LAWS = sizeof laws / sizeof *laws, OFFSET = 2, PREDICTIVE = 3 };
 
 /* Times steps one by one and subtracts the clock's cost. */
 static void time_ticks(ethd__ticking *t, double *ns, size_t count) {
-  double cost = ethd__bench_clock_cost();
+  double cost = bench_clock_cost();
   for (size_t i = 0; i < count; i++) {
     const ethd_sense *sense = ethd__ticking_sense(t);
     int64_t start = ethd__clock_now();
@@ -42,20 +42,20 @@ static void time_ticks(ethd__ticking *t, double *ns, size_t count) {
 }
 
 /* Takes each tick of the taps in `ns` at the lower quartile of its times. */
-static ethd__bench_times quiet_times(const double *ns, size_t count) {
+static bench_times quiet_times(const double *ns, size_t count) {
   enum { ROUNDS_MAX = 256 };
   double ticks[ETHD__TAP_TICKS], rounds[ROUNDS_MAX];
   size_t n = count / ETHD__TAP_TICKS;
   for (size_t k = 0; k < ETHD__TAP_TICKS; k++) {
     for (size_t r = 0; r < n; r++) rounds[r] = ns[r * ETHD__TAP_TICKS + k];
-    (void)ethd__bench_percentiles(rounds, n);
+    (void)bench_percentiles(rounds, n);
     ticks[k] = rounds[n / 4];
   }
-  return ethd__bench_percentiles(ticks, ETHD__TAP_TICKS);
+  return bench_percentiles(ticks, ETHD__TAP_TICKS);
 }
 
 typedef struct hot {
-  ethd__bench_entry entries[LAWS * FINGERS * SCENES];
+  bench_entry entries[LAWS * FINGERS * SCENES];
   ethd__tick_row rows[LAWS * FINGERS * SCENES];
   size_t count;
   size_t at[LAWS][FINGERS][SCENES]; /* index into entries */
@@ -71,73 +71,33 @@ static void gather(hot *h) {
         h->at[l][f][s] = h->count;
         h->rows[h->count] = (ethd__tick_row){"hot", laws[l]->law.id, scenes[s].name, fingers[f]};
         ethd__ticking *t = ethd__ticking_create(laws[l], scenes[s].wall, scenes[s].segments, (ethd__tap_finger)f);
-        h->entries[h->count++] = (ethd__bench_entry){"", tap, t, ETHD__TAP_TICKS, 0};
+        h->entries[h->count++] = (bench_entry){"", tap, t, ETHD__TAP_TICKS, 0};
       }
 }
 
 static double mean_of(const hot *h, int l, int f, int s) { return h->entries[h->at[l][f][s]].ns; }
 
-/* ---- by part ---- */
-
-static void put_part(FILE *csv, const char *law, const char *name, double ns) {
-  ethd__tick_put(csv, (ethd__tick_row){"part", law, "1000", "rays"}, name, NAN, ns);
-  printf("    %-52s %6.1f\n", name, ns);
-}
-
-/* Reports differences between set-ups each of which has one thing more, and what recording costs. */
-static void report_parts(FILE *csv, const hot *h) {
-  const int f = ETHD__TAP_RAYS;
-  ethd__ticking *t = h->entries[h->at[OFFSET][f][THOUSAND]].data;
-  ethd__bench_entry both[2] = {{"", tap, t, ETHD__TAP_TICKS, 0}, {"", tap, NULL, ETHD__TAP_TICKS, 0}};
-  ethd__ticking *untraced = ethd__ticking_create(laws[OFFSET], ETHD__TAP_OUTLINE, 1000, f);
-  untraced->traced = 0;
-  both[1].data = untraced;
-  ethd__bench_race(both, 2, 0.1);
-  double record = both[0].ns - both[1].ns;
-  printf("  by part, ns a tick, as differences (offset, rays, 1000 segments):\n");
-  put_part(csv, "offset", "record: into a ring instead of the stack", record);
-  put_part(csv, "offset", "kinematics; tracking; guard; the frame", mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE) - record);
-  put_part(csv, "offset", "estimator: joint speeds",
-           mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE) - mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE));
-  put_part(csv, "offset", "estimator: finger filter",
-           mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE) - mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE));
-  put_part(csv, "offset", "estimator: ring fit (300 Hz)",
-           mean_of(h, OFFSET, f, NONE) - mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE));
-  for (int l = 0; l < LAWS; l++) {
-    char name[64];
-    snprintf(name, sizeof name, "transition and contact at a wall: %s", laws[l]->law.id);
-    put_part(csv, laws[l]->law.id, name, mean_of(h, l, f, WALL) - mean_of(h, l, f, NONE));
-  }
-  put_part(csv, "offset", "scene: 1000 segments instead of the wall",
-           mean_of(h, OFFSET, f, THOUSAND) - mean_of(h, OFFSET, f, WALL));
-  ethd__ticking_destroy(untraced);
-}
-
 /* Hot ticks at a wall under both laws, by turns, so that what else the machine does meets both. */
 static double looking_ahead_costs(const hot *h, int quick) {
   const int f = ETHD__TAP_RAYS;
-  ethd__bench_entry both[2] = {{"", tap, h->entries[h->at[PREDICTIVE][f][WALL]].data, ETHD__TAP_TICKS, 0},
-                               {"", tap, h->entries[h->at[OFFSET][f][WALL]].data, ETHD__TAP_TICKS, 0}};
-  ethd__bench_race(both, 2, quick ? 0.2 : 2);
+  bench_entry both[2] = {{"", tap, h->entries[h->at[PREDICTIVE][f][WALL]].data, ETHD__TAP_TICKS, 0},
+                         {"", tap, h->entries[h->at[OFFSET][f][WALL]].data, ETHD__TAP_TICKS, 0}};
+  bench_race(both, 2, quick ? 0.2 : 2);
   return both[0].ns / both[1].ns;
 }
 
 /* ---- goals ---- */
 
-static void goal(const char *what, double value, double most, const char *unit) {
-  printf("  goal: %-52s <= %-5g %-3s %.3g, %s\n", what, most, unit, value, ethd__bench_verdict(value <= most));
-}
-
-static void judge(const hot *h, const ethd__bench_times *times) {
+static void judge(const hot *h, const bench_times *times) {
   static const int judged[] = {ETHD__TAP_ENCODER, ETHD__TAP_RAYS}, walls[] = {BESIDE, THOUSAND};
   for (int f = 0; f < 2; f++)
     for (int s = 0; s < 2; s++) {
-      const ethd__bench_times *t = &times[h->at[OFFSET][judged[f]][walls[s]]];
+      const bench_times *t = &times[h->at[OFFSET][judged[f]][walls[s]]];
       char what[64];
       snprintf(what, sizeof what, "mean, %s, 1000 segments %s", fingers[judged[f]], s ? "tapped" : "beside the wall");
-      goal(what, t->mean, 150, "ns");
+      bench_goal(what, t->mean, 150, "ns");
       snprintf(what, sizeof what, "p99, %s, 1000 segments %s", fingers[judged[f]], s ? "tapped" : "beside the wall");
-      goal(what, t->p99, 230, "ns");
+      bench_goal(what, t->p99, 230, "ns");
     }
 }
 
@@ -147,40 +107,38 @@ static void run(const char *folder, int quick) {
   static hot h;
   if (!ns) ethd__fail(ETHD_EXIT_FAILED, "no memory");
   FILE *csv =
-      ethd__bench_csv(folder, "tick",
-                      "# a tap a second: ring and finger meet the wall at x = 0.238 m and stay "
-                      "there for a fifth of the time\n"
-                      "# finger: known; encoder: the same, joint speeds estimated; centre, "
-                      "rays: readings at 300 Hz, filtered, fitted\n"
-                      "# scene: nothing, a half-plane, the half-plane and 1000 segments near "
-                      "it, an outline alone of as many segments as it says\n"
-                      "# hot mean, median, p99: of the quickest quarter of each tick's repetitions; tail, max: of all\n"
-                      "# tail: share_longer of the ticks take longer; part: ns a tick\n",
-                      "what,law,scene,finger,name,share_longer,time_ns");
+      bench_csv(folder, "tick",
+                "# a tap a second: ring and finger meet the wall at x = 0.238 m and stay "
+                "there for a fifth of the time\n"
+                "# finger: known; encoder: the same, joint speeds estimated; centre, "
+                "rays: readings at 300 Hz, filtered, fitted\n"
+                "# scene: nothing, a half-plane, the half-plane and 1000 segments near "
+                "it, an outline alone of as many segments as it says\n"
+                "# hot mean, median, p99: of the quickest quarter of each tick's repetitions; tail, max: of all\n"
+                "# tail: share_longer of the ticks take longer\n",
+                "what,law,scene,finger,name,share_longer,time_ns");
   printf("the whole tick, recording included, ns; finger: rays are fitted and filtered, and joint "
          "speeds estimated\n");
   printf("  %-10s %-8s %-7s %-8s %7s %7s %7s %8s %9s\n", "", "law", "scene", "finger", "mean", "median", "p99", "p99.9",
          "max");
   gather(&h);
-  ethd__bench_times times[LAWS * FINGERS * SCENES];
+  bench_times times[LAWS * FINGERS * SCENES];
   for (size_t i = 0; i < h.count; i++) {
-    ethd__bench_race(&h.entries[i], 1,
-                     quick ? 0.05 : 0.5); /* the parts run one after the other, each in a warm cache */
+    bench_race(&h.entries[i], 1, quick ? 0.05 : 0.5); /* the parts run one after the other, each in a warm cache */
     time_ticks(h.entries[i].data, ns, count);
-    ethd__bench_times quiet = quiet_times(ns, count);
+    bench_times quiet = quiet_times(ns, count);
     quiet.mean = h.entries[i].ns;
     times[i] = ethd__tick_report(csv, h.rows[i], ns, count, &quiet);
   }
-  report_parts(csv, &h);
   ethd__tick_cold(csv, quick);
   ethd__tick_live(csv, quick);
   judge(&h, times);
-  goal("hot mean at a wall, predictive against offset, times", looking_ahead_costs(&h, quick), 1.15, "");
-  goal("hot mean from 100 to 100000 segments, times",
-       mean_of(&h, OFFSET, ETHD__TAP_RAYS, MANY) / mean_of(&h, OFFSET, ETHD__TAP_RAYS, HUNDRED), 2.2, "");
+  bench_goal("hot mean at a wall, predictive against offset, times", looking_ahead_costs(&h, quick), 1.15, "");
+  bench_goal("hot mean from 100 to 100000 segments, times",
+             mean_of(&h, OFFSET, ETHD__TAP_RAYS, MANY) / mean_of(&h, OFFSET, ETHD__TAP_RAYS, HUNDRED), 2.2, "");
   for (size_t i = 0; i < h.count; i++) ethd__ticking_destroy(h.entries[i].data);
   free(ns);
-  ethd__bench_close();
+  bench_close();
 }
 
-const ethd__bench ethd__bench_tick = {"tick", run};
+const bench bench_tick = {"tick", run};

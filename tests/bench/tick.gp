@@ -1,19 +1,16 @@
-# The whole tick: how many take longer than a time, and where the time goes.
-set terminal pngcairo size 1350,760 font "Sans,15"
+# The whole tick: how many take longer than a time.
+set terminal pngcairo size 1000,760 font "Sans,15"
 set output out
 
 here(what, scene, finger) = strcol("what") eq what && strcol("law") eq "offset" && strcol("scene") eq scene && strcol("finger") eq finger
 tail(what, scene, finger) = here(what, scene, finger) && strcol("name") eq "tail" ? column("time_ns") : NaN
 
-set multiplot
 set tmargin at screen 0.79
 set bmargin at screen 0.12
 set label 1 "The whole tick of the controller, recording included" at screen 0.07,0.957 font "Sans Bold,18"
 set label 2 "simulated taps on an outline of 1000 segments, law offset, finger from 16 rays. Cold: 32 MB written before. Live: a loop at 1 kHz" \
   at screen 0.07,0.915 font "Sans,13" textcolor rgb grey
 
-set lmargin at screen 0.07
-set rmargin at screen 0.51
 set title "share of ticks that take longer" font "Sans,15" offset 0,-0.5
 set logscale xy
 set xrange [40:100000]
@@ -29,27 +26,3 @@ plot in using (tail("hot", "1000", "known")):"share_longer" with lines lw 2.4 lc
      in using (tail("cold", "1000", "rays")):"share_longer" with lines lw 2.4 lc rgb "#1f5fa8", \
      in using (tail("live", "1000", "rays")):"share_longer" with lines lw 2.4 lc rgb "#d98a00", \
      in using (tail("live early", "1000", "rays")):"share_longer" with lines lw 2.4 lc rgb "#2e7d4f"
-unset label
-
-# the parts that differences between set-ups show
-set lmargin at screen 0.80
-set rmargin at screen 0.975
-set title "by part, hot, mean"
-unset logscale
-unset format
-parts = "'1000 segments instead of the wall' 'transition, contact at a wall' 'ring fit (300 Hz)' 'finger filter' 'joint speeds' 'kinematics, tracking, guard, frame' 'record'"
-part(i) = strcol("what") ne "part" || strcol("law") ne "offset" ? -1 : \
-  strstrt(strcol("name"), "scene") ? 0 : strstrt(strcol("name"), "transition and contact at") ? 1 : strstrt(strcol("name"), "ring fit") ? 2 : \
-  strstrt(strcol("name"), "finger filter") ? 3 : strstrt(strcol("name"), "joint speeds") ? 4 : strstrt(strcol("name"), "the frame") ? 5 : strstrt(strcol("name"), "record") == 1 ? 6 : -1
-set xrange [0:90]
-set xtics 20
-set yrange [6.6:-0.6]
-set ytics ()
-do for [k = 1:words(parts)] {set ytics add (word(parts, k) k - 1)}
-set grid noytics
-set xlabel "ns a tick"
-set style fill solid 0.8 noborder
-width(i) = part(0) >= 0 ? column("time_ns") : NaN
-plot in using (width(0)):(part(0)):(0):(width(0)):(part(0) - 0.3):(part(0) + 0.3) with boxxyerror lc rgb "#c0392b", \
-     in using (width(0)):(part(0)):(sprintf("%.0f", column("time_ns"))) with labels left offset 0.5,0 font "Sans,13" textcolor rgb "#333333"
-unset multiplot

@@ -29,12 +29,9 @@ typedef struct ethd__tick_row {
   const char *what, *law, *scene, *finger;
 } ethd__tick_row;
 
-void ethd__tick_put(FILE *csv, ethd__tick_row row, const char *name, double share_longer, double ns);
-
 /* Prints a line and writes mean, percentiles and the tail; sorts `ns`. `quiet` (NULL: none): mean,
    median and p99 without disturbances by other programs. */
-ethd__bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, size_t count,
-                                    const ethd__bench_times *quiet);
+bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, size_t count, const bench_times *quiet);
 
 /* Measure ticks cold, with the caches emptied before them, and live, in a 1 kHz loop. */
 void ethd__tick_cold(FILE *csv, int quick);

@@ -13,8 +13,6 @@
 #include "clock.h"
 #include "locked_memory.h"
 
-static void heading(const char *text) { printf("  %s\n", text); }
-
 static double *room_for(size_t count) {
   double *ns = calloc(count, sizeof *ns);
   if (!ns) ethd__fail(ETHD_EXIT_FAILED, "no memory");
@@ -31,12 +29,11 @@ static void evict(unsigned char *buffer) {
 
 /* Every fifth tick runs with cold caches, so that all phases of a tap are sampled. */
 void ethd__tick_cold(FILE *csv, int quick) {
-
   size_t count = quick ? 100 : 1000;
-  double *ns = room_for(count), cost = ethd__bench_clock_cost();
+  double *ns = room_for(count), cost = bench_clock_cost();
   unsigned char *buffer = calloc(1, EVICT);
   if (!buffer) ethd__fail(ETHD_EXIT_FAILED, "no memory");
-  heading("cold: 32 MB written before the tick");
+  printf("  cold: 32 MB written before the tick\n");
   for (int s = 0; s < 2; s++) {
     ethd__ticking *t =
         ethd__ticking_create(&ethd_transition_offset, s ? ETHD__TAP_OUTLINE : ETHD__TAP_PLANE, 1000, ETHD__TAP_RAYS);
@@ -83,7 +80,7 @@ static void *live(void *data) {
   struct sched_param priority = {.sched_priority = 80};
   l->fifo = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0;
   ethd__flush_denormals();
-  double cost = ethd__bench_clock_cost();
+  double cost = bench_clock_cost();
   int64_t next = ethd__clock_now() + 10 * (int64_t)PERIOD;
   for (size_t i = 0; i < l->count; i++, next += PERIOD) {
     const ethd_sense sense = *ethd__ticking_sense(l->tapping);
@@ -105,25 +102,19 @@ static void run_loop(live_loop *l) {
 }
 
 void ethd__tick_live(FILE *csv, int quick) {
-  static const ethd_transition_law *const laws[] = {&ethd_transition_offset, &ethd_transition_smooth,
-                                                    &ethd_transition_abrupt, &ethd_transition_predictive};
   size_t count = quick ? 1500 : 20000;
   double *ns = room_for(count);
   bool locked = ethd__memory_lock();
-  for (int k = 0; k < (quick ? 1 : 4); k++)
-    for (int early = 0; early < 2; early++) {
-      live_loop l = {ethd__ticking_create(laws[k], ETHD__TAP_OUTLINE, 1000, ETHD__TAP_RAYS), early, ns, count, 0};
-      run_loop(&l);
-      if (k == 0 && !early) {
-        printf("  live: 1 kHz, clock_nanosleep, %s, memory %s; early: awake 100 us before, three dry "
-               "ticks\n",
-               l.fifo ? "SCHED_FIFO 80" : "SCHED_OTHER (SCHED_FIFO isn't allowed)", locked ? "locked" : "not locked");
-        fprintf(csv, "# live: %s\n", l.fifo ? "SCHED_FIFO 80" : "SCHED_OTHER");
-      }
-      ethd__tick_report(csv, (ethd__tick_row){early ? "live early" : "live", laws[k]->law.id, "1000", "rays"}, ns,
-                        count, NULL);
-      ethd__ticking_destroy(l.tapping);
-    }
+  for (int early = 0; early < 2; early++) {
+    live_loop l = {ethd__ticking_create(&ethd_transition_offset, ETHD__TAP_OUTLINE, 1000, ETHD__TAP_RAYS), early, ns,
+                   count, 0};
+    run_loop(&l);
+    if (!early)
+      printf("  live: 1 kHz, clock_nanosleep, %s, memory %s; early: awake 100 us before, three dry ticks\n",
+             l.fifo ? "SCHED_FIFO 80" : "SCHED_OTHER (SCHED_FIFO isn't allowed)", locked ? "locked" : "not locked");
+    ethd__tick_report(csv, (ethd__tick_row){early ? "live early" : "live", "offset", "1000", "rays"}, ns, count, NULL);
+    ethd__ticking_destroy(l.tapping);
+  }
   if (locked) munlockall();
   free(ns);
 }

@@ -44,13 +44,12 @@ void ethd__ticking_step(ethd__ticking *t, const ethd_sense *sense) {
 
 /* ---- output ---- */
 
-void ethd__tick_put(FILE *csv, ethd__tick_row row, const char *name, double share_longer, double ns) {
+static void put(FILE *csv, ethd__tick_row row, const char *name, double share_longer, double ns) {
   fprintf(csv, "%s,%s,%s,%s,%s,%.17g,%.17g\n", row.what, row.law, row.scene, row.finger, name, share_longer, ns);
 }
 
-ethd__bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, size_t count,
-                                    const ethd__bench_times *quiet) {
-  ethd__bench_times t = ethd__bench_percentiles(ns, count);
+bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, size_t count, const bench_times *quiet) {
+  bench_times t = bench_percentiles(ns, count);
   if (quiet) {
     t.mean = quiet->mean;
     t.median = quiet->median;
@@ -58,11 +57,11 @@ ethd__bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, s
   }
   printf("  %-10s %-8s %-7s %-8s %7.0f %7.0f %7.0f %8.0f %9.0f\n", row.what, row.law, row.scene, row.finger, t.mean,
          t.median, t.p99, t.p999, t.max);
-  ethd__tick_put(csv, row, "mean", NAN, t.mean);
-  ethd__tick_put(csv, row, "median", 0.5, t.median);
-  ethd__tick_put(csv, row, "p99", 0.01, t.p99);
+  put(csv, row, "mean", NAN, t.mean);
+  put(csv, row, "median", 0.5, t.median);
+  put(csv, row, "p99", 0.01, t.p99);
   for (double share = 1; share * (double)count >= 1; share *= 0.8)
-    ethd__tick_put(csv, row, "tail", share, ns[count - (size_t)(share * (double)count)]);
-  ethd__tick_put(csv, row, "max", 0, t.max);
+    put(csv, row, "tail", share, ns[count - (size_t)(share * (double)count)]);
+  put(csv, row, "max", 0, t.max);
   return t;
 }

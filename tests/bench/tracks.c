@@ -60,7 +60,7 @@ static ethd_vec reach_at(const void *path, double t) {
 }
 
 ethd__tracks ethd__tracks_reaches(size_t count, double latency) {
-  ethd__tracks set = {"reaches", room_for(count, sizeof *set.at), count};
+  ethd__tracks set = {room_for(count, sizeof *set.at), count};
   for (uint64_t i = 0; i < count; i++) {
     double speed = draw(3 * i, 0.5, 1.1), length = draw(3 * i + 1, 0.1, 0.3);
     reach r = {length, 1.875 * length / speed, draw(3 * i + 2, 0, 2 * M_PI)};
@@ -99,7 +99,7 @@ static int add_file(const char *file, double latency, uint64_t seed, ethd__track
 }
 
 static ethd__tracks read_folder(const char *folder, double latency, uint64_t *seed) {
-  ethd__tracks set = {NULL, NULL, 0};
+  ethd__tracks set = {NULL, 0};
   char pattern[4096];
   glob_t found;
   snprintf(pattern, sizeof pattern, "%s*.csv", folder);
@@ -108,16 +108,6 @@ static ethd__tracks read_folder(const char *folder, double latency, uint64_t *se
   for (size_t i = 0; i < found.gl_pathc; i++) *seed += (uint64_t)add_file(found.gl_pathv[i], latency, *seed, &set);
   globfree(&found);
   return set;
-}
-
-/* Returns the last part of "a/b/name/". */
-static char *folder_name(const char *folder) {
-  char *copy = strdup(folder), *end = copy ? strrchr(copy, '/') : NULL;
-  if (!end) ethd__fail(ETHD_EXIT_FAILED, "no memory");
-  *end = 0;
-  char *last = strrchr(copy, '/'), *name = strdup(last ? last + 1 : copy);
-  free(copy);
-  return name;
 }
 
 size_t ethd__tracks_recorded(double latency, ethd__tracks *out, size_t room) {
@@ -135,7 +125,6 @@ size_t ethd__tracks_recorded(double latency, ethd__tracks *out, size_t room) {
       free(set.at);
       continue;
     }
-    set.name = folder_name(folders.gl_pathv[i]);
     out[sets++] = set;
   }
   globfree(&folders);

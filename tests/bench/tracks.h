@@ -17,7 +17,6 @@ typedef struct ethd__track {
 } ethd__track;
 
 typedef struct ethd__tracks {
-  const char *name;
   ethd__track *at;
   size_t count;
 } ethd__tracks;

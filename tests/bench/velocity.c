@@ -1,5 +1,4 @@
-/* Joint speed from encoder counts: noise at a constant speed, error and lag while braking, the tick at
-   which abs(v) < v_th is declared, and ns a step. */
+/* Joint speed from encoder counts: error at a constant speed and while braking, and ns a step. */
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +10,7 @@
 #define T 1e-3      /* s */
 #define LINK 0.25   /* m */
 #define STEADY 0.03 /* m/s */
-#define V_TH 0.020  /* m/s */
+#define V_END 0.020 /* m/s: braking counts until 3 ms after the ring is as slow */
 
 /* Braking, as plant n does it: force saturated down to v1, then damped by B_d. */
 #define MASS 0.1173 /* kg */
@@ -37,7 +36,7 @@ static double position_at(double t) {
   return t <= 0 ? V0 * t : t <= t1 ? (V0 - a * t / 2) * t : x1 + tau * (v1 - speed_at(t));
 }
 
-static double still_from(void) { return (V0 - v1) / a + tau * log(v1 / V_TH); }
+static double still_from(void) { return (V0 - v1) / a + tau * log(v1 / V_END); }
 
 static double torque_at(double t) { return t <= 0 ? 0 : -LINK * fmin(F_SAT, B_D * speed_at(t)); }
 
@@ -49,29 +48,29 @@ typedef struct contender {
   const char *family;
   ethd_velocity_method method;
   double p[3];
-  int with_torque, shown; /* shown: in the table, else only in the CSV */
+  int with_torque;
   ethd_velocity v;
   char name[32];
 } contender;
 
 static contender all[] = {
-    {"difference", ETHD_VELOCITY_DIFFERENCE, {0}, 0, 1, {0}, ""},
-    {"lowpass", ETHD_VELOCITY_LOWPASS, {20}, 0, 0, {0}, ""},
-    {"lowpass", ETHD_VELOCITY_LOWPASS, {50}, 0, 1, {0}, ""},
-    {"lowpass", ETHD_VELOCITY_LOWPASS, {130}, 0, 1, {0}, ""},
-    {"lowpass", ETHD_VELOCITY_LOWPASS, {300}, 0, 0, {0}, ""},
-    {"lsq", ETHD_VELOCITY_LSQ, {4}, 0, 0, {0}, ""},
-    {"lsq", ETHD_VELOCITY_LSQ, {8}, 0, 1, {0}, ""},
-    {"lsq", ETHD_VELOCITY_LSQ, {16}, 0, 0, {0}, ""},
-    {"foaw", ETHD_VELOCITY_FOAW, {8, 132e-6}, 0, 0, {0}, ""},
-    {"foaw", ETHD_VELOCITY_FOAW, {16, 132e-6}, 0, 1, {0}, ""},
-    {"foaw", ETHD_VELOCITY_FOAW, {32, 132e-6}, 0, 1, {0}, ""},
-    {"kalman", ETHD_VELOCITY_KALMAN, {38e-6, 20, MASS *LINK *LINK}, 0, 0, {0}, ""},
-    {"kalman", ETHD_VELOCITY_KALMAN, {38e-6, 50, MASS *LINK *LINK}, 0, 1, {0}, ""},
-    {"kalman", ETHD_VELOCITY_KALMAN, {38e-6, 200, MASS *LINK *LINK}, 0, 0, {0}, ""},
-    {"kalman with torque", ETHD_VELOCITY_KALMAN, {38e-6, 5, MASS *LINK *LINK}, 1, 0, {0}, ""},
-    {"kalman with torque", ETHD_VELOCITY_KALMAN, {38e-6, 20, MASS *LINK *LINK}, 1, 1, {0}, ""},
-    {"kalman with torque", ETHD_VELOCITY_KALMAN, {38e-6, 50, MASS *LINK *LINK}, 1, 1, {0}, ""},
+    {"difference", ETHD_VELOCITY_DIFFERENCE, {0}, 0, {0}, ""},
+    {"lowpass", ETHD_VELOCITY_LOWPASS, {20}, 0, {0}, ""},
+    {"lowpass", ETHD_VELOCITY_LOWPASS, {50}, 0, {0}, ""},
+    {"lowpass", ETHD_VELOCITY_LOWPASS, {130}, 0, {0}, ""},
+    {"lowpass", ETHD_VELOCITY_LOWPASS, {300}, 0, {0}, ""},
+    {"lsq", ETHD_VELOCITY_LSQ, {4}, 0, {0}, ""},
+    {"lsq", ETHD_VELOCITY_LSQ, {8}, 0, {0}, ""},
+    {"lsq", ETHD_VELOCITY_LSQ, {16}, 0, {0}, ""},
+    {"foaw", ETHD_VELOCITY_FOAW, {8, 132e-6}, 0, {0}, ""},
+    {"foaw", ETHD_VELOCITY_FOAW, {16, 132e-6}, 0, {0}, ""},
+    {"foaw", ETHD_VELOCITY_FOAW, {32, 132e-6}, 0, {0}, ""},
+    {"kalman", ETHD_VELOCITY_KALMAN, {38e-6, 20, MASS *LINK *LINK}, 0, {0}, ""},
+    {"kalman", ETHD_VELOCITY_KALMAN, {38e-6, 50, MASS *LINK *LINK}, 0, {0}, ""},
+    {"kalman", ETHD_VELOCITY_KALMAN, {38e-6, 200, MASS *LINK *LINK}, 0, {0}, ""},
+    {"kalman with torque", ETHD_VELOCITY_KALMAN, {38e-6, 5, MASS *LINK *LINK}, 1, {0}, ""},
+    {"kalman with torque", ETHD_VELOCITY_KALMAN, {38e-6, 20, MASS *LINK *LINK}, 1, {0}, ""},
+    {"kalman with torque", ETHD_VELOCITY_KALMAN, {38e-6, 50, MASS *LINK *LINK}, 1, {0}, ""},
 };
 enum { ESTIMATORS = sizeof all / sizeof *all };
 
@@ -89,12 +88,6 @@ static void prepare(contender *c) {
 
 /* ---- what is measured ---- */
 
-typedef struct figure {
-  double steady, braking;      /* m/s rms */
-  double delay, spread, early; /* s after abs(v) < v_th becomes true: mean, sd; share of runs that declare it before */
-  double ns;
-} figure;
-
 static double steady(const contender *c, int runs) {
   double sum = 0;
   for (int run = 0; run < runs; run++) {
@@ -111,30 +104,21 @@ static double steady(const contender *c, int runs) {
 
 /* Measures braking, which starts anywhere between two ticks. The error counts from then until the ring has been still
    for 3 ms. */
-static void brake(const contender *c, int runs, figure *out) {
-  double sum = 0, ticks = 0, delays = 0, squares = 0, early = 0;
+static double braking(const contender *c, int runs) {
+  double sum = 0, ticks = 0;
   for (int run = 0; run < runs; run++) {
     ethd_velocity_state s;
     double phase = draw(2 * (uint64_t)run, 0, 1), within = draw(2 * (uint64_t)run + 1, 0, 1);
-    double declared = NAN;
     memset(&s, 0, sizeof s);
     for (int k = 0; k < TICKS; k++) {
       double t = (k - BEFORE - within) * T, torque = c->with_torque ? torque_at(t - T / 2) : 0;
       double v = LINK * ethd_velocity_step(&c->v, &s, encoder(position_at(t), phase), torque, T);
-      if (t < 0) continue;
-      if (isnan(declared) && fabs(v) < V_TH) declared = t - still_from();
-      if (t > still_from() + 3e-3) continue;
+      if (t < 0 || t > still_from() + 3e-3) continue;
       sum += (v - speed_at(t)) * (v - speed_at(t));
       ticks += 1;
     }
-    delays += declared;
-    squares += declared * declared;
-    early += declared < 0;
   }
-  out->braking = sqrt(sum / ticks);
-  out->delay = delays / runs;
-  out->spread = sqrt(fmax(0, squares / runs - out->delay * out->delay));
-  out->early = early / runs;
+  return sqrt(sum / ticks);
 }
 
 static void work(void *data) {
@@ -146,45 +130,30 @@ static void work(void *data) {
   memset(&s, 0, sizeof s);
   double sum = 0;
   for (int k = 0; k < LONG; k++) sum += ethd_velocity_step(&c->v, &s, q[k], 0, T);
-  ethd__bench_sink = sum;
+  bench_sink = sum;
 }
 
-static void put(FILE *csv, const contender *c, const figure *f) {
-  double setting = c->method == ETHD_VELOCITY_KALMAN ? c->p[1] : c->p[0];
-  fprintf(csv, "%s,%.17g,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", c->family, setting, c->shown, f->ns,
-          1e3 * f->steady, 1e3 * f->braking, 1e3 * ethd_velocity_lag(&c->v), 1e3 * f->delay, 1e3 * f->spread, f->early);
-  if (!c->shown) return;
-  printf("  %-24s %6.1f %12.2f %12.1f %10.2f %12.2f +- %.2f %9.0f %%\n", c->name, f->ns, 1e3 * f->steady,
-         1e3 * f->braking, 1e3 * ethd_velocity_lag(&c->v), 1e3 * f->delay, 1e3 * f->spread, 100 * f->early);
-}
-
-void ethd__bench_velocity(const char *folder, int quick) {
-  ethd__bench_entry entries[ESTIMATORS];
+void bench_velocity(const char *folder, int quick) {
+  bench_entry entries[ESTIMATORS];
   for (int i = 0; i < ESTIMATORS; i++) {
     prepare(&all[i]);
-    entries[i] = (ethd__bench_entry){all[i].name, work, &all[i], LONG, 0};
+    entries[i] = (bench_entry){all[i].name, work, &all[i], LONG, 0};
   }
-  ethd__bench_race(entries, ESTIMATORS, quick ? 0.1 : 1);
-  FILE *csv = ethd__bench_csv(folder, "velocity",
-                              "# encoder of 48000 counts a joint turn, read every ms; figures at the ring, 0.25 "
-                              "m from the joint\n"
-                              "# steady: rms error at 30 mm/s; braking: rms error from 0.4 m/s to rest as plant "
-                              "n does it (49 m/s^2, then 1.17 ms)\n"
-                              "# declared: first tick with abs(v) < 20 mm/s, after the truth; early: share of "
-                              "runs in which it comes before\n"
-                              "# setting: cutoff in Hz, window in samples, unknown acceleration in rad/s^2\n",
-                              "method,setting,shown,time_ns,steady_rms_mmps,braking_rms_mmps,lag_ms,declared_ms,"
-                              "declared_sd_ms,early_share");
+  bench_race(entries, ESTIMATORS, quick ? 0.1 : 1);
+  FILE *csv =
+      bench_csv(folder, "velocity",
+                "# encoder of 48000 counts a joint turn, read every ms; error: rms, m/s at the ring, 0.25 m from the\n"
+                "# joint, at 30 mm/s and from 0.4 m/s to rest as plant n does it (49 m/s^2, then 1.17 ms)\n",
+                BENCH_RACE);
   printf("velocity: encoder of 48000 counts a turn at 1 kHz, a count a tick is %.1f mm/s at the ring\n",
          1e3 * count * LINK / T);
-  printf("  rms error, mm/s               ns   at 30 mm/s     braking     lag, ms   abs(v) < v_th "
-         "declared after, ms; early\n");
+  printf("  rms error, mm/s               ns   at 30 mm/s     braking     lag, ms\n");
   for (int i = 0; i < ESTIMATORS; i++) {
-    figure f = {0};
-    f.steady = steady(&all[i], quick ? 20 : 200);
-    brake(&all[i], quick ? 300 : RUNS_MAX, &f);
-    f.ns = entries[i].ns;
-    put(csv, &all[i], &f);
+    const double at_30 = steady(&all[i], quick ? 20 : 200), while_braking = braking(&all[i], quick ? 300 : RUNS_MAX);
+    bench_row(csv, "at 30 mm/s: error in m/s", all[i].family, entries[i].ns, at_30);
+    bench_row(csv, "braking: error in m/s", all[i].family, entries[i].ns, while_braking);
+    printf("  %-24s %6.1f %12.2f %12.1f %10.2f\n", all[i].name, entries[i].ns, 1e3 * at_30, 1e3 * while_braking,
+           1e3 * ethd_velocity_lag(&all[i].v));
   }
-  ethd__bench_close();
+  bench_close();
 }

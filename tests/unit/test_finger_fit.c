@@ -1,14 +1,13 @@
 /* Ring fits against brute force, hand-made polygons and the Cramer-Rao bound. */
 #include "ethd/estimate.h"
 
-#include <stdio.h>
 #include <string.h>
 
-#include "draw.h"
+#include "unit/fit_trials.h"
 #include "unit/suite.h"
 
-#define RING 12e-3
-#define FINGER 7.5e-3
+#define RING FIT_RING
+#define FINGER FIT_FINGER
 #define PI 3.14159265358979323846
 
 enum { TRIALS = 20000 };
@@ -337,66 +336,29 @@ TEST_LOOP(test_too_little, 0, ETHD_FIT_COUNT) {
 
 /* ---- accuracy ---- */
 
-/* Fisher information of (centre, radius) in rays of equal noise: d rho / d (c, R) = (n, 1) / (n.u). The
-   bound of the squared centre error: radius sought or known. */
-static void add_information(double m[6], ethd_vec c, double rho, int k) {
-  ethd_vec u = {cos(PI * k / 8), sin(PI * k / 8)}, n = ethd_vec_sub(ethd_vec_scale(rho, u), c);
-  double scale = 1 / ethd_vec_dot(n, u), g[3] = {n.x * scale, n.y * scale, FINGER * scale};
-  for (int i = 0, at = 0; i < 3; i++)
-    for (int j = i; j < 3; j++) m[at++] += g[i] * g[j];
-}
-
-static double bound(const double m[6], int known) {
-  double a = m[0], b = m[1], d = m[3];
-  if (!known) a -= m[2] * m[2] / m[5], b -= m[2] * m[4] / m[5], d -= m[4] * m[4] / m[5];
-  return (a + d) / (a * d - b * b);
-}
-
-typedef struct scenario {
-  const char *name;
-  int lost, outlier;
-} scenario;
-
-/* rms errors of the four fits, then the two bounds, mm. */
-static void measure(scenario what, double out[ETHD_FIT_COUNT + 2]) {
-  const double range = 0.3e-3, variance = range * range / 3;
+/* Gives the rms errors of the four fits, then the two bounds, mm. */
+static void measure(const fit_scenario *what, double out[ETHD_FIT_COUNT + 2]) {
   double sum[ETHD_FIT_COUNT + 2] = {0};
   for (uint64_t i = 0; i < TRIALS; i++) {
-    double r[ETHD_RAYS], m[6] = {0};
-    ethd_vec c = some_centre(i);
-    int first = (int)(draw_bits(i ^ 0x100000) % 16);
-    ethd_fit_rays(RING, FINGER, c, r);
-    for (int k = 0; k < ETHD_RAYS; k++) {
-      if ((k - first + 16) % 16 < what.lost)
-        r[k] = NAN;
-      else
-        add_information(m, c, RING - r[k], k);
-    }
-    noisy(r, i, range);
-    if (what.outlier) r[(first + 15) % 16] += i % 2 ? 3e-3 : -3e-3;
+    fit_trial trial;
+    fit_try(i, what, &trial);
     for (int f = 0; f < ETHD_FIT_COUNT; f++) {
       ethd_fit fit = prepared((ethd_fit_method)f);
       ethd_finger finger;
-      ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
-      double e = distance(finger.centre, c);
+      ck_assert_int_eq(ethd_fit_step(&fit, trial.r, &finger), ETHD_OK);
+      double e = distance(finger.centre, trial.centre);
       sum[f] += e * e;
     }
-    sum[ETHD_FIT_COUNT] += variance * bound(m, 0);
-    sum[ETHD_FIT_COUNT + 1] += variance * bound(m, 1);
+    for (int known = 0; known < 2; known++) sum[ETHD_FIT_COUNT + known] += trial.bound[known];
   }
   for (int f = 0; f < ETHD_FIT_COUNT + 2; f++) out[f] = 1e3 * sqrt(sum[f] / TRIALS);
-  printf("  %-24s", what.name);
-  for (int f = 0; f < ETHD_FIT_COUNT + 2; f++) printf(" %11.4f", out[f]);
-  printf("\n");
 }
 
 TEST(test_accuracy) {
   double full[ETHD_FIT_COUNT + 2], half[ETHD_FIT_COUNT + 2], outlier[ETHD_FIT_COUNT + 2];
-  printf("centre error rms, mm             kasa vertex-mean    centroid      robust       bound  known "
-         "R\n");
-  measure((scenario){"16 rays +-0.3 mm", 0, 0}, full);
-  measure((scenario){"half the ring lost", 8, 0}, half);
-  measure((scenario){"one outlier of 3 mm", 0, 1}, outlier);
+  measure(&fit_scenarios[0], full);
+  measure(&fit_scenarios[1], half);
+  measure(&fit_scenarios[2], outlier);
   double scored = full[ETHD_FIT_COUNT], known = full[ETHD_FIT_COUNT + 1];
   ck_assert(full[ETHD_FIT_KASA] <= 1.05 * scored && full[ETHD_FIT_KASA] >= 0.97 * scored);
   ck_assert(full[ETHD_FIT_ROBUST] <= 1.05 * known && full[ETHD_FIT_ROBUST] >= 0.97 * known);
