@@ -84,10 +84,10 @@ drawn() {
 }
 drawn "$here/report" "$here"
 for words in 'Simulated, not measured' 'No significance is claimed' 'smallest two-sided p is 0.5' 'Nobody has answered' 'early-contact' \
-  'simulated participants, no person' 'under seed 1: 2000 bootstrap samples' 'sign-flip' 'fitted to the four means' \
+  '2 participants: <b>simulated, no person</b>' 'under seed 1: 2000 bootstrap samples' 'sign-flip' 'fitted to the four means' \
   'none of them is evidence about people' 'VO-A: tracking fades' 'medians have no 95 % interval' 'margins of the study file' '&#177;0.5 mm (d_max) and &#177;0.02 and' \
   '<b>The task:</b> to tap once, at a speed that was asked for (low: 0.2 &#177; 0.06 m/s; high: 0.4 &#177; 0.08 m/s)' \
-  "$(awk -F, 'NR > 1 && $3 == "test" && $9 { if (!n[$1 $5 $6]++) c[$1]++ } END { for (p in c) w += c[p] == 4; print w + 0 }' "$here/taps.csv") of them have a valid tap in every cell" 'lmer(d_max_mm ~ strategy \* speed' 'second reaches the motors' 'mm into the wall that is asked for: .* the guard lets through at most 5\.[0-9] N'; do
+  "$(awk -F, 'NR > 1 && $3 == "test" && $9 { if (!n[$1 $5 $6]++) c[$1]++ } END { for (p in c) w += c[p] == 4; print "with a valid tap in every cell: " w + 0 }' "$here/taps.csv")" 'lmer(d_max_mm ~ strategy \* speed' 'second reaches the motors' 'mm into the wall that is asked for: .* the guard lets through at most 5\.[0-9] N'; do
   grep -q -e "$words" "$here/report/report.html" || fail "the page doesn't say: $words"
 done
 grep -q 'too few people' "$here/report/report.html" && ! grep -q '<td[^>]*>shown<' "$here/report/report.html" || fail "two people show something"
@@ -213,7 +213,7 @@ grep -q 'No ticks were recorded' "$folder/grid/report/report.html" || fail "the 
 printf '[study]\nparticipants = 1\ntraining = 0\ntaps = 1\nattempts = 2\nspeeds = low\n[hand]\nsource = recorded\nmotion = avraham_free_mit\n' >"$folder/recorded.study"
 "$study" --quiet "$folder/recorded.study" --out "$folder/recorded" >"$folder/out" 2>&1 || fail "$(cat "$folder/out")"
 drawn "$folder/recorded/report" "$folder/recorded"
-grep -q 'move as <b>recorded people</b> did: movements of <code>avraham_free_mit</code>' "$folder/recorded/report/report.html" || fail "the page doesn't say that people were recorded"
+grep -q '1 participant: <b>simulated</b>, with hands that move as those of <b>recorded people</b> did: movements of <code>avraham_free_mit</code>' "$folder/recorded/report/report.html" || fail "the page doesn't say that people were recorded"
 awk -F, -v OFS=, '{ for (i = 1; i <= NF; i++) if ($i == "hand") h = i } NR == 1 && !h { $(NF + 1) = "hand" } NR > 1 { $(h ? h : NF + 1) = NR % 2 ? "mouse" : "recorded" } 1' \
   "$folder/recorded/taps.csv" >"$folder/taps.csv" && cp "$folder/taps.csv" "$folder/recorded/taps.csv"
 drawn "$folder/recorded/report" "$folder/recorded"

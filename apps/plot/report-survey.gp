@@ -1,4 +1,4 @@
-# Answers to one question by cell: a bar of shares of each answer, and the median.
+# Answers to one question by cell: a bar of shares of each answer; the median, and the mean as in the paper's figure 18.
 #   gnuplot -e "in='survey-answers.csv'; out='survey-q1.png'; question='1'; answers='5'" report-survey.gp
 # in: a file of ethd-report. scale says what the first and the last answer mean and may be left out; svg: draw an SVG,
 # whose words can be read.
@@ -25,7 +25,7 @@ only(q) = column("question") == q && column("n") > 0
 share(k) = 100.0*column(sprintf("n%d", k))/column("n")
 below(k) = k < 1 ? 0 : sum [j=1:k] share(j)
 set label 1 "Q".question.": shares of the answers, ".scale at screen 0.03,1 - 24.0/high font "Sans Bold,15"
-set lmargin at screen 0.2; set rmargin at screen 0.89
+set lmargin at screen 0.2; set rmargin at screen 0.82
 set tmargin at screen 1 - 52.0/high; set bmargin at screen 1 - (52.0 + 34.0*cells)/high
 set xtics ("0 %%" 0, "50 %%" 50, "100 %%" 100)
 # labels have a place even where they are empty: gnuplot 5.4 ends on a list of labels that are all undefined
@@ -33,4 +33,4 @@ plot for [k=1:last] in using (only(asked) ? (below(k) + below(k - 1))/2 : NaN):"
     with boxxyerror lc rgb tints[tint(k)] fs solid 1 border lc rgb "#bbbbbb", \
   for [k=1:last] in using (only(asked) ? (below(k) + below(k - 1))/2 : 0):"cell":(only(asked) && share(k) >= 6 ? sprintf("%d", k) : "") \
     with labels font "Sans,12" textcolor rgb (tint(k) < 3 || tint(k) > 7 ? "#ffffff" : "#333333"), \
-  in using (100):"cell":(only(asked) ? sprintf("  median %g", column("median")) : "") with labels left font "Sans,12" textcolor rgb "#333333"
+  in using (100):"cell":(only(asked) ? sprintf("  median %g, mean %.2f", column("median"), column("mean")) : "") with labels left font "Sans,12" textcolor rgb "#333333"

@@ -17,7 +17,7 @@ _STYLE = (
     "th{border-bottom:2px solid #999;font-weight:600}td.n,th.n{text-align:right}td.s{white-space:nowrap}"
     "td.w{font-weight:600;padding-top:.8rem}tr:hover td{background:#f7f9fb}figure{margin:1.2rem 0}"
     "img{max-width:100%;height:auto;border:1px solid #e4e4e4}figcaption{color:#555;font-size:.92rem}"
-    "div.wide{overflow-x:auto}code{background:#f3f3f3;padding:0 .25em}nav a{margin-right:1rem}"
+    "div.wide,pre{overflow-x:auto}code{background:#f3f3f3;padding:0 .25em;overflow-wrap:anywhere}nav a{margin-right:1rem;white-space:nowrap}"
     "@media(max-width:1250px){table{font-size:.84rem}th,td{padding:.25rem .4rem}}"
     "@media print{@page{size:A4;margin:12mm}body{max-width:none}h2{break-after:avoid}figure{break-inside:avoid}"
     "tr{break-inside:avoid}div.wide{overflow:visible}table{font-size:62%}img{max-height:24cm;width:auto}"

@@ -90,7 +90,7 @@ def _clipped(words: str) -> str:
 
 def _draw(r: Report, q: _Question) -> None:
     first, last = (_clipped(q.answers[k]) if q.has_words else "" for k in (0, -1))
-    paper = "" if r.folder.facts["own_questions"] else " Figure 18 of the paper shows only the means of three participants' answers."
+    paper = "" if r.folder.facts["own_questions"] else " Figure 18 of the paper shows the means of three participants' answers."
     r.draw("report-survey.gp", f"survey-q{q.number}.png", f"Q{q.number}: the answers by cell.{paper}",
            {"in": Path("survey-answers.csv"), "question": str(q.number), "answers": str(len(q.answers)),
             "scale": f"1 {first}{' ' if first else ''}to {len(q.answers)} {last}"})

@@ -61,19 +61,19 @@ def _task(r: Report) -> None:
 
 def _who(r: Report, leader: str) -> Tuple[str, str]:
     if leader == "recorded":
-        return ("simulated participants who move as <b>recorded people</b> did: movements of <code>%s</code>. They didn't feel this ring: the "
-                "movements were recorded elsewhere, and the fingertip is simulated", r.folder.facts["motion"] or "movement.csv, the same one for all")
+        return ("<b>simulated</b>, with hands that move as those of <b>recorded people</b> did: movements of <code>%s</code>. They didn't feel this "
+                "ring: the movements were recorded elsewhere, and the fingertip is simulated", r.folder.facts["motion"] or "movement.csv, the same one for all")
     simulated = r.folder.facts["is_simulated"]
     return {"device": "<b>no person</b>: a rehearsal, with the finger that the simulated device has" if simulated
                       else "people, with their fingers in the device's ring",
             "mouse": "people, who led the hand with a pointer; the finger that touches the ring is simulated",
-            "simulated": "<b>simulated participants, no person</b>: plausible hands and fingers, whose spread between people is assumed"}[leader], ""
+            "simulated": "<b>simulated, no person</b>: plausible hands and fingers, whose spread between people is assumed"}[leader], ""
 
 
 def _people(r: Report) -> None:
     t = r.taps
     whole = functools.reduce(np.logical_and, (~np.isnan(t.by_person(c, np.where(c.valid, 1.0, np.nan), "mean")) for c in t.cells))
-    r.page.put("<li><b>On whom:</b> %d ", len(t.people))
+    r.page.put("<li><b>On whom:</b> %d participant%s: ", len(t.people), plural(len(t.people)))
     between = ""
     for leader in (k for k in LEADERS if r.led[k]):
         words, name = _who(r, leader)
@@ -82,8 +82,7 @@ def _people(r: Report) -> None:
             r.page.put("(%d tap%s) ", r.led[leader], plural(r.led[leader]))
         r.page.put(words, *([name] if name else []))
         between = "; "
-    found = int(np.count_nonzero(whole))
-    r.page.put("; %d of them %s a valid tap in every cell.</li>\n", found, "has" if found == 1 else "have")
+    r.page.put("; with a valid tap in every cell: %d.</li>\n", np.count_nonzero(whole))
 
 
 def _left_out(r: Report) -> None:
@@ -144,7 +143,7 @@ def head(r: Report, body: Page) -> None:
         part(r)
     r.page.put("</ul>\n<nav>")
     for name, title in (link for link in _LINKS if link[0] in body.names):
-        r.page.put('<a href="#%s">%s</a>', name, title)
+        r.page.put('<a href="#%s">%s</a>\n', name, title)
     r.page.put("</nav>\n")
 
 
