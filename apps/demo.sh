@@ -4,7 +4,7 @@
 # TAPS and PLANT may be set: TAPS=1000 PLANT=b make demo
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-BUILD=${BUILD:-build} TAPS=${TAPS:-400} PLANT=${PLANT:-n}
+BUILD=${BUILD:-build} TAPS=${TAPS:-400} PLANT=${PLANT:-q}
 out=$BUILD/demo
 mkdir -p "$out/traces"
 

@@ -154,7 +154,7 @@ for words in 'teleop' 'teleop 4777' 'teleop 4777 x' 'teleop 70000 1' 'robot 4777
   [ $? = 2 ] && grep -q 'PORT SECONDS.* are needed' "$work/out" || fail "$words: $(cat "$work/out")"
 done
 env -u ETHD_DATA_DIR "$work/teleop" $((20000 + $$ % 12000)) 1 >"$work/out" 2>&1 </dev/null
-[ $? = 1 ] && grep -q 'n.plant: No such file or directory; ETHD_DATA_DIR may name' "$work/out" || fail "no plants: $(cat "$work/out")"
+[ $? = 1 ] && grep -q 'q.plant: No such file or directory; ETHD_DATA_DIR may name' "$work/out" || fail "no plants: $(cat "$work/out")"
 # swaps far beyond what the controller's queue of events holds, each taken at the worst moment, between poll and post: a scene
 # that it still has is never posted; Ctrl-C while nobody speaks is no failure of the robot
 cat >"$work/swaps.c" <<'END'

@@ -28,7 +28,8 @@ refuse() {
 }
 
 # A recording, which repeats to the bit and keeps its box; the same input gives the same plant.
-"$bin/ethd-identify" --excite --virtual --duration 6.158 --record sines >said || fail "excite: exit $?"
+printf '[device]\nplant = n\n' >n.ini
+"$bin/ethd-identify" --excite --virtual --config n.ini --duration 6.158 --record sines >said || fail "excite: exit $?"
 grep -q 'dry run  .*simulated' said || fail "the dry run isn't said"
 "$bin/ethd-replay" --verify sines >/dev/null || fail "the recording doesn't repeat"
 "$bin/ethd-identify" sines --out n.plant >said || fail "sines: exit $?"
@@ -48,7 +49,7 @@ awk '$1 == "stiffness" && !($3 > 3385 && $3 < 3595) || $1 == "motor_mass" && !($
   $1 == "mass_x" && !($3 > 0.0919 && $3 < 0.0976) { print "FAILED p.plant: " $0; bad = 1 } END { exit bad }' p.plant || failed=1
 
 # It predicts a session that it wasn't fitted to; another plant does so worse.
-"$bin/ethd-identify" --excite --virtual --duration 9 --record more >/dev/null || fail "excite again: exit $?"
+"$bin/ethd-identify" --excite --virtual --config n.ini --duration 9 --record more >/dev/null || fail "excite again: exit $?"
 judged() { "$bin/ethd-identify" --judge "$1" more | sed -n 's/.*joint 1.*ahead .* (\(.*\) counts)$/\1/p'; }
 awk -v own="$(judged n.plant)" -v other="$(judged b)" 'BEGIN { exit !(own > 0 && own < 2 && other > 3 * own) }' ||
   fail "judged: $(judged n.plant) and $(judged b) counts after 50 ms"

@@ -43,5 +43,5 @@ for script in ${ETHD_WHOLE:+calibrate convert run study}; do hosted sh "tests/$s
 $CC -Iinclude apps/examples/teleop.c -o "$work/test_teleop" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -lmodbus \
   -lm -ldl -lpthread || fail "teleop: it isn't compiled"
 env -u ETHD_DATA_DIR LD_PRELOAD="$work/host.so" "$work/test_teleop" $((20000 + $$ % 12000)) 0.5 >"$work/out" 2>&1 </dev/null
-[ $? = 1 ] && grep -q 'n.plant: No such file' "$work/out" || fail "teleop: $(cat "$work/out")"
+[ $? = 1 ] && grep -q 'q.plant: No such file' "$work/out" || fail "teleop: $(cat "$work/out")"
 exit $failed

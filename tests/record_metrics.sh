@@ -20,7 +20,7 @@ done
 motion=${ETHD_MOTION_DIR:-tests/motion}
 for file in optotrak_tap_mit/tathum_par1_trial035_tap.csv avraham_free_mit/avraham_ND_s02_be38_free.csv; do
   rm -rf "$folder/f"
-  "$tap" --finger "$motion/$file" --taps 3 --record "$folder/f" >"$folder/out"
+  "$tap" --plant n --finger "$motion/$file" --taps 3 --record "$folder/f" >"$folder/out"
   "$python" tests/record_metrics.py "$folder/f" n
   "$BUILD/bin/ethd-replay" --verify "$folder/f"
 done

@@ -7,8 +7,10 @@
 #include "cli/cli.h"
 #include "cli/json.h"
 #include "ethd/ethd.h"
+#include "sim/plant.h"
 #include "study/columns.h"
 #include "study/stations.h"
+#include "tap/device.h"
 #include "tap/study.h"
 #include "text/claim.h"
 #include "text/text.h"
@@ -42,13 +44,21 @@ static void put_words(FILE *file, const char *key, const ethd__word_list *list) 
   putc(']', file);
 }
 
+/* As the study's file or the configuration calls it: the folder holds a copy. */
+static const char *plant_name(const ethd__folder *folder) {
+  char unsaid[ETHD_MESSAGE_MAX];
+  ethd__sim_settings device;
+  if (folder->protocol.plant) return folder->protocol.plant;
+  return !ethd__device_read(folder->loaded.config, &device, unsaid) && device.plant ? device.plant->value : ETHD__PLANT;
+}
+
 static void put_protocol(FILE *file, const ethd__folder *folder) {
   static const char *const hands[] = {"simulated", "recorded", "people", "mouse"};
   const ethd__protocol *p = &folder->protocol;
   put_word(file, "hands", hands[p->hands]);
   put_word(file, "motion", p->motion);
   put_truth(file, "follows_movement", folder->finger);
-  put_word(file, "plant", p->plant);
+  put_word(file, "plant", plant_name(folder));
   put_word(file, "device", folder->loaded.config->device);
   put_truth(file, "is_simulated", !strcmp(folder->loaded.config->device, ethd_driver_sim.id));
   put_truth(file, "valid_by_finger", p->validity == ETHD_TAP_BY_FINGER);

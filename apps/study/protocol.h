@@ -15,8 +15,8 @@
      rest = 3          blocks, 0: never   slack = 0.0004          m: so near to the ring people's fingers touch it
 
      [device]                             [grid]                  --simulate: every combination
-     config = n.ini                       contact.k_e = 1000,2500
-     plant = n
+     config = q.ini                       contact.k_e = 1000,2500
+     plant = q
                                           [scene]
                                           file = room.scene       in place of the configuration's
 

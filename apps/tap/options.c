@@ -18,14 +18,15 @@ static const char doc[] =
     "Plants are fitted to the paper's Table 1, not measured; nothing runs in real time. Tap k has the same "
     "finger under every law. The same seed gives the same bytes on every machine.\n\n"
     "FILE.csv has columns t_s,x_m,y_m, or those of --columns (further ones are ignored), of a movement towards -x. "
-    "Commas, semicolons or tabs separate them. It is shifted so that "
-    "the finger touches the wall where its speed toward it, after its peak, has fallen to the given speed "
-    "(low, high: 0.2, 0.4 m/s), and is never scaled unless --scale says so. Speed is the slope of the "
+    "Commas, semicolons or tabs separate them. It is shifted so that its speed toward the wall, after its peak, has "
+    "fallen to the given speed (low, high: 0.2, 0.4 m/s) where the ring meets the wall, or, with --validity=finger, "
+    "where "
+    "the finger touches it. It is never scaled unless --scale says so. Speed is the slope of the "
     "least-squares line through the samples within 5 ms, at least one on either side; the path itself is "
     "not filtered. A tap on a recording begins once the ring is clear of the wall.\n\n"
     "Every tap is in --csv. Means are over the valid taps, in which the ring met the wall before the finger touched, "
-    "at 0.2 +- 0.06 (low) or 0.4 +- 0.08 m/s (high), or at V +- (0.04 + 0.1 V) for a number; plant p has "
-    "bands of its own. Where a law stops the ring before the wall, all laws are shown once more by the rule of "
+    "at 0.2 (low) or 0.4 m/s (high) within the plant's bands (its section [study]), or at V +- (0.04 + 0.1 V) for a "
+    "number. Where a law stops the ring before the wall, all laws are shown once more by the rule of "
     "--validity finger.\n\n"
     "Figures, along the wall's normal, positive into it:\n"
     "  v_rvo    the ring's speed as it meets the wall\n"
@@ -70,7 +71,7 @@ static const struct argp_option options[] = {
      "attempts for each law and speed (100; 10 with --finger; with --paper 400, twice as many at high speed)", 0},
     {"seed", 'r', "S", 0, "seed of every random number (1)", 0},
     {"plant", 'p', "q|n|b|p|FILE", 0,
-     "the simulated device and finger (default: that of --config, else n); a FILE.plant has FILE.ini beside it", 0},
+     "the simulated device and finger (default: that of --config, else q); a FILE.plant has FILE.ini beside it", 0},
     {"finger", 'f', "FILE.csv", 0, "use a recorded movement as the hand's voluntary path", 0},
     {"columns", OPTION_COLUMNS, "T,X,Y", 0,
      "the names of the movement's columns (t_s,x_m,y_m); -x_m turns the axis of x_m", 0},

@@ -46,7 +46,7 @@ void ethd__movement_free(ethd__movement *movement);
 /* Returns the speed toward the wall at sample k, m/s. */
 double ethd__movement_speed(const ethd__movement *movement, size_t k);
 
-/* Where the movement touches. */
+/* Where the movement has fallen to a speed. */
 typedef struct ethd__touchdown {
   double t;        /* s of the movement */
   ethd_vec x;      /* m, as recorded */

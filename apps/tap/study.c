@@ -146,7 +146,8 @@ ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__speed *speed, uint6
   const ethd__study *study = stage->study;
   ethd_sim_draw(&study->plant, study->seed, tap, speed->commanded, study->meet, out);
   if (!study->movement.count) return ETHD_OK;
-  ethd_vec centre = finger_at_wall(study, out->finger_radius);
+  /* The rule judges the speed there: of the ring as it meets the wall, or of the finger as it touches it. */
+  ethd_vec centre = study->validity == ETHD_TAP_BY_PAPER ? study->meet : finger_at_wall(study, out->finger_radius);
   size_t count = ethd__movement_place(&study->movement, &speed->touchdown, centre, &stage->setup.arm, stage->samples);
   out->path = (ethd_path){.samples = stage->samples, .sample_count = count};
   out->commanded = speed->centre;

@@ -15,9 +15,9 @@ extern const size_t ethd__plant_row_count;
 ethd_status ethd__plant_check(const ethd_plant *plant, ethd_error *error);
 ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error);
 
-#define ETHD__PLANT "n" /* the plant where none is named */
+#define ETHD__PLANT "q" /* the plant where none is named */
 
-/* Returns where a plant is: a file, relative to `folder`; "n" is n.plant there, else among the files that came with the
+/* Returns where a plant is: a file, relative to `folder`; "q" is q.plant there, else among the files that came with the
    programs (ETHD_DATA_DIR, by default ../share/ethd of the program's folder). The caller frees it; NULL: no memory.
    [main] */
 char *ethd__plant_path(const char *plant, const char *folder);

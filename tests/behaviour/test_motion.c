@@ -82,9 +82,8 @@ static void assert_on_path(const recording *r, size_t begin, size_t end, size_t 
   }
 }
 
-static void assert_path(const recording *r, const ethd__tap_rows *rows, const ethd__touchdown *touchdown,
-                        double finger_radius, const char *where) {
-  const double shift[2] = {0.238 + finger_radius - touchdown->x.x, 0.25 - touchdown->x.y};
+static void assert_path(const recording *r, const ethd__tap_rows *rows, const ethd__touchdown *touchdown, const char *where) {
+  const double shift[2] = {0.25 - touchdown->x.x, 0.25 - touchdown->x.y};
   size_t begin, end;
   reachable(r, shift, touchdown->t, &begin, &end);
   size_t i = begin;
@@ -138,7 +137,7 @@ static void run_file(ethd__study *study, const ethd_plant *plant, const char *pa
       ethd_sim_draw(plant, study->seed, s, 0.3, study->meet, &tap);
       reasons[result.metrics.reason]++;
       if (!l) assert_touchdown(&r, &study->speeds[s], where);
-      assert_path(&r, &stage.rows, &study->speeds[s].touchdown, tap.finger_radius, where);
+      assert_path(&r, &stage.rows, &study->speeds[s].touchdown, where);
       assert_finite(&stage.rows, where);
       assert_torque_within(&stage.rows, &n, where);
       assert_forces(&stage.rows, (kind)l, where);

@@ -165,7 +165,7 @@ def traces(r: Report) -> None:
         number = _FIGURES.get((cell.law, cell.speed.word))
         like = f"As figure {number} of the paper, a tap of one participant" if number else "In the manner of figures 9 to 12 of the paper"
         r.draw("tap.gp", f"{table}.png", f"{like}: {cell.label}, tap {tap}{which}.{depth}",
-               {"in": Path(f"{table}.csv"), "title": f"{cell.label} speed", "plant": "" if r.measured else r.folder.facts["plant"] or "n"})
+               {"in": Path(f"{table}.csv"), "title": f"{cell.label} speed", "plant": "" if r.measured else r.folder.facts["plant"]})
         drawn.append(cell)
     if not drawn and r.tap:
         raise Refusal(f"--tap: no test tap {r.tap} is recorded here", FAILED)

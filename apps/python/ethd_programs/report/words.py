@@ -101,7 +101,7 @@ def _device(r: Report) -> None:
                    "filter has it. A finger counts as touching %.2g mm from the ring on.", f["device"], 1e3 * f["slack_m"])
     else:
         r.page.put("<li><b>With what:</b> <b>Simulated, not measured</b>: a simulated device and fingertip (plant <code>%s</code>), fitted to Table 1 "
-                   "of the paper.", f["plant"] or "n")
+                   "of the paper.", f["plant"])
     r.page.put(" Laws and gains are those of the configuration, the paper's unless it says otherwise.</li>\n")
 
 
