@@ -74,8 +74,8 @@ awk -F, 'NR > 1 { n[$2] += $5; if ($5 && $18 != "") { s[$2] += $18; m[$2]++ } ha
         exit !(n["predictive"] >= 12 && s["predictive"] / m["predictive"] < 1e-4 && s["offset"] / m["offset"] > 2e-4) }' \
   "$folder/v.csv" || fail "by the finger: $(cat "$folder/v.csv")"
 # The table has the same taps twice: by the ring, which says nothing of such a law, and by the finger; its means are the CSV's.
-"$tap" --taps 20 --speed low --transition offset,predictive >"$folder/v.txt"
-"$tap" --taps 20 --speed low --transition offset,predictive --validity finger >"$folder/w.txt"
+"$tap" --taps 80 --speed low --transition offset,predictive >"$folder/v.txt"
+"$tap" --taps 80 --speed low --transition offset,predictive --validity finger >"$folder/w.txt"
 grep -q '^predictive low  .* stops before the wall: see below$' "$folder/v.txt" || fail "no word of a law that stops the ring: $(cat "$folder/v.txt")"
 [ "$(grep -c '^offset ' "$folder/v.txt")" = 2 ] || fail "not two rows of offset: $(cat "$folder/v.txt")"
 for law in offset predictive; do

@@ -4,7 +4,7 @@
 # in the title, empty: the tap was measured.
 if (!exists("in") || !exists("out")) { print "tap.gp: set in and out: gnuplot -e \"in='x.csv'; out='x.png'\" tap.gp"; exit status 2 }
 if (!exists("title")) title = in
-if (!exists("plant")) plant = "n"
+if (!exists("plant")) plant = "q"
 if (!exists("from")) from = -40
 if (!exists("to")) to = 90
 if (!exists("scale")) scale = 1.0
@@ -62,12 +62,10 @@ set ylabel "position along n, mm" offset 1.2
 set yrange [bottom:top]
 set object 1 rectangle from graph 0, first 0 to graph 1, graph 1 fc rgb "#f3f1ec" fs solid noborder behind
 set label 3 "virtual wall" at graph 0.012, first (top - 0.07*(top - bottom)) textcolor rgb grey font "Sans Italic,13"
-under = valley > 0 && valley < 0.2*(top - bottom) ? 0 : valley # where neither ring nor wall cross the words
 if (turned > 0) {
   set arrow 3 from t_valley,peak to t_valley,valley heads size 2,90 front lc rgb ring lw 1.6
   set arrow 4 from t_peak,peak to t_valley,peak nohead front lc rgb ring lw 1.2 dt (2,3)
-  beside = touch == touch && touch > t_valley ? touch : t_valley # before its touch the finger comes from below
-  set label 6 sprintf("d_{max} %.2f mm", peak - valley) at beside,under offset 0.6,-1.1 textcolor rgb ring font "Sans,13" front
+  set label 6 sprintf("d_{max} %.2f mm", peak - valley) at screen 0.85, graph 0.6 textcolor rgb ring font "Sans,13"
 }
 offset_style = moved_any ? 5 : 4 # where the wall didn't move, its line once more: a curve without a point is warned of
 plot in using (t(0)):(1e3*column("hand_m")) with lines ls 3 title "hand's path", \
@@ -84,11 +82,11 @@ set tmargin at screen 0.545
 set bmargin at screen 0.34
 set ylabel "speed along n, m/s"
 set yrange [*:*]
-if (touch == touch) {set label 4 " finger touches" at touch, graph 0.93 textcolor rgb finger font "Sans,13"}
+if (touch == touch) {set label 4 "finger touches" at touch, graph 1.04 textcolor rgb finger font "Sans,13"}
 set label 5 "ring meets wall " at 0, graph 0.07 right textcolor rgb grey font "Sans,13"
-if (v_rmin == v_rmin) { # a ring around the point, its words where the curves have fallen already
+if (v_rmin == v_rmin) { # a ring around the point
   set label 7 "" at t_rmin,v_rmin point pt 6 ps 1.6 lc rgb ring lw 2 front
-  set label 8 sprintf("v_{r min} %.3f m/s", v_rmin) at touch, graph 0.8 offset 3,0 textcolor rgb ring font "Sans,13" front
+  set label 8 sprintf("v_{r min} %.3f m/s", v_rmin) at screen 0.85, graph 0.6 textcolor rgb ring font "Sans,13"
 }
 plot 0 with lines lc rgb "#bbbbbb" lw 1 notitle, \
      in using (t(0)):"v_finger_mps" with lines lc rgb finger lw 1.6 title "finger", \

@@ -82,7 +82,8 @@ static void assert_on_path(const recording *r, size_t begin, size_t end, size_t 
   }
 }
 
-static void assert_path(const recording *r, const ethd__tap_rows *rows, const ethd__touchdown *touchdown, const char *where) {
+static void assert_path(const recording *r, const ethd__tap_rows *rows, const ethd__touchdown *touchdown,
+                        const char *where) {
   const double shift[2] = {0.25 - touchdown->x.x, 0.25 - touchdown->x.y};
   size_t begin, end;
   reachable(r, shift, touchdown->t, &begin, &end);
