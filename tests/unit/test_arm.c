@@ -132,21 +132,6 @@ TEST_LOOP(test_continuous_and_bounded, 0, ARMS) {
   }
 }
 
-TEST_LOOP(test_threshold_is_smooth, 0, ARMS) {
-  const ethd_arm *arm = &arms[_i];
-  double q[2], at = asin(ETHD_ARM_SINGULAR);
-  for (int i = 1; i < 10; i++) {
-    ethd_pose inside, outside;
-    double delta = at * pow(10, -i);
-    with_angle(arm, 0.4, at - delta, q);
-    ethd_arm_pose(arm, q, &inside);
-    with_angle(arm, 0.4, at + delta, q);
-    ethd_arm_pose(arm, q, &outside);
-    for (int k = 0; k < 4; k++)
-      ck_assert_double_le(fabs(inside.j_inv[k] - outside.j_inv[k]), 4 * delta / at * largest(outside.j_inv));
-  }
-}
-
 TEST_LOOP(test_singular, 0, ARMS) {
   double q[2];
   ethd_pose pose;

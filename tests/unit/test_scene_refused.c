@@ -1,9 +1,12 @@
-/* Scenes as structs that contradict themselves, and collinear edges: refused before a number of theirs is read. */
+/* Scenes as structs: what is refused, and large ones. */
 #include <math.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "unit/rig.h"
+#include "ethd/scene.h"
+#include "unit/draw.h"
+#include "unit/suite.h"
 
 static ethd_error error;
 
@@ -21,6 +24,39 @@ static ethd_status create(const ethd_scene_def *def) {
 static ethd_status one(ethd_shape shape, int32_t material, const double *numbers, size_t count) {
   const ethd_object_def object = {shape, material, numbers, count, 7};
   return create(&(ethd_scene_def){&object, 1, NULL, 0});
+}
+
+/* What a text can't say; what it can is refused in test_scene_parse.c. */
+static const struct {
+  ethd_status status;
+  ethd_shape shape;
+  size_t count;
+  double p[16];
+} numbers[] = {
+    {ETHD_E_NOT_FINITE, ETHD_SHAPE_CIRCLE, 3, {NAN, 0, 1}},
+    {ETHD_E_NOT_FINITE, ETHD_SHAPE_CIRCLE, 3, {0, 0, INFINITY}},
+    {ETHD_E_NOT_FINITE, ETHD_SHAPE_BOX, 5, {0, 0, 1, 1, NAN}},
+    {ETHD_E_ARGUMENT, ETHD_SHAPE_CIRCLE, 2, {0, 0}},
+    {ETHD_E_ARGUMENT, ETHD_SHAPE_CIRCLE, 4, {0, 0, 1, 1}},
+    {ETHD_E_ARGUMENT, ETHD_SHAPE_POLYGON, 4, {0, 0, 1, 1}},
+    {ETHD_E_ARGUMENT, ETHD_SHAPE_POLYGON, 7, {0, 0, 1, 0, 1, 1, 0}},
+    {ETHD_E_ARGUMENT, ETHD_SHAPE_POLYLINE, 2, {0, 0}},
+    {ETHD_E_ARGUMENT, ETHD_SHAPE_SEGMENT, 6, {0, 0, 1, 1, 2, 2}},
+    {ETHD_E_GEOMETRY, ETHD_SHAPE_SEGMENT, 4, {1, 1, 1, 1.0000000000000002}},
+    {ETHD_OK, ETHD_SHAPE_POLYLINE, 8, {0, 0, 1, 1, 1, 0, 0, 1}},
+    {ETHD_OK, ETHD_SHAPE_POLYGON, 8, {0, 0, 1, 0, 2, 0, 1, 1}}, /* a straight vertex */
+    {ETHD_OK, ETHD_SHAPE_CAPSULE, 5, {1, 1, 1, 1, 0.1}},
+    {ETHD_OK, ETHD_SHAPE_CIRCLE, 3, {1e6, -1e6, 1e6}},
+};
+TEST(test_numbers) {
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+    ck_assert_msg(one(numbers[i].shape, -1, numbers[i].p, numbers[i].count) == numbers[i].status, "%zu: %s", i,
+                  ethd_status_sentence(error.status));
+    if (numbers[i].status) ck_assert(error.line == 7 && error.name[0]);
+  }
+  const double circle[] = {0, 0, 1};
+  ck_assert_int_eq(one(ETHD_SHAPE_CIRCLE, 0, circle, 3), ETHD_E_RANGE);
+  ck_assert_int_eq(one(ETHD_SHAPE_CIRCLE, -2, circle, 3), ETHD_E_RANGE);
 }
 
 TEST(test_arrays_that_are_missing) {
@@ -65,6 +101,37 @@ TEST(test_names_without_an_end) {
   ck_assert_str_eq(error.name, "material");
 }
 
+TEST(test_materials_of_structs) {
+  static ethd_material m[ETHD_MATERIALS_MAX + 1];
+  double circle[3] = {0, 0, 1};
+  ethd_object_def o = {ETHD_SHAPE_CIRCLE, 1, circle, 3, 0};
+  ethd_scene *scene;
+  for (int i = 0; i <= ETHD_MATERIALS_MAX; i++)
+    m[i] = (ethd_material){.name = {(char)('A' + i)}, .count = 1, .line = i, .values = {{"k", 0}}};
+  ethd_scene_def def = {&o, 1, m, ETHD_MATERIALS_MAX};
+  ck_assert_int_eq(ethd_scene_create(&def, &scene, &error), ETHD_OK);
+  ethd_touch t;
+  ck_assert_uint_eq(ethd_scene_touches(scene, (ethd_vec){0, 0}, 0, &t, 1), 1);
+  ck_assert_int_eq(t.material, 1);
+  ck_assert_str_eq(ethd_scene_material(scene, 1)->name, "B");
+  ck_assert_ptr_null(ethd_scene_material(scene, ETHD_MATERIALS_MAX));
+  ethd_scene_destroy(scene);
+  def.material_count++;
+  ck_assert_int_eq(ethd_scene_create(&def, &scene, &error), ETHD_E_FULL);
+  def.material_count = 3;
+  m[2].name[0] = 'A';
+  ck_assert_int_eq(ethd_scene_create(&def, &scene, &error), ETHD_E_DUPLICATE);
+  ck_assert_int_eq(error.line, 2);
+  m[2] = (ethd_material){.name = "C", .count = ETHD_PARAMS_MAX + 1};
+  ck_assert_int_eq(ethd_scene_create(&def, &scene, &error), ETHD_E_FULL);
+  m[2] = (ethd_material){.name = "C", .count = 2, .values = {{"k", 1}, {"k", 2}}};
+  ck_assert_int_eq(ethd_scene_create(&def, &scene, &error), ETHD_E_DUPLICATE);
+  for (int i = 0; i < 2; i++) {
+    m[2] = (ethd_material){.name = "C", .count = 1, .values = {{"k", i ? NAN : INFINITY}}};
+    ck_assert_int_eq(ethd_scene_create(&def, &scene, &error), ETHD_E_NOT_FINITE);
+  }
+}
+
 /* Edges on one line: apart, touching at a point, and one within the other. */
 TEST(test_edges_on_one_line) {
   static const struct {
@@ -106,4 +173,33 @@ TEST(test_edges_by_number) {
     }
   ck_assert_int_eq(one(ETHD_SHAPE_POLYGON, -1, p, 2 * POINTS), ETHD_E_GEOMETRY);
   ck_assert_str_eq(error.name, "polygon: edges 117 and 119 meet");
+}
+
+/* Half a million objects and a polygon of 100 000 points, built and asked. */
+TEST(test_large) {
+  enum { OBJECTS = 500000, N = 100000 };
+  ethd_object_def *o = calloc(OBJECTS, sizeof *o);
+  double *p = malloc((size_t)OBJECTS * 4 * sizeof *p), *q = malloc(2 * N * sizeof *q);
+  for (size_t i = 0; i < OBJECTS; i++) {
+    for (size_t k = 0; k < 4; k++) p[4 * i + k] = draw(4 * i + k, -1, 1);
+    o[i] = (ethd_object_def){ETHD_SHAPE_SEGMENT, -1, p + 4 * i, 4, 0};
+  }
+  for (size_t k = 0; k < N; k++) {
+    double a = 2 * M_PI * (double)k / N;
+    q[2 * k] = 5 + cos(a), q[2 * k + 1] = sin(a);
+  }
+  o[OBJECTS - 1] = (ethd_object_def){ETHD_SHAPE_POLYGON, -1, q, 2 * N, 0};
+  ethd_scene_def def = {o, OBJECTS, NULL, 0};
+  ethd_scene *s;
+  ck_assert_int_eq(ethd_scene_create(&def, &s, NULL), ETHD_OK);
+  ethd_nearest nearest;
+  ethd_scene_query(s, (ethd_vec){5.5, 0}, &nearest);
+  ck_assert_int_eq(nearest.object, OBJECTS - 1);
+  ck_assert(fabs(nearest.distance + 0.5 * cos(0)) < 1e-9);
+  ethd_scene_query(s, (ethd_vec){3, 0}, &nearest);
+  ck_assert(fabs(nearest.distance - 1) < 1e-9 && nearest.object == OBJECTS - 1);
+  ethd_scene_destroy(s);
+  free(o);
+  free(p);
+  free(q);
 }

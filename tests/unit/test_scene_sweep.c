@@ -5,16 +5,12 @@
 
 #include "scene/check.h"
 #include "scene/scene.h"
+#include "unit/draw.h"
 #include "unit/suite.h"
 
-static uint64_t seed;
+static uint64_t drawn;
 
-static uint64_t draw(void) {
-  uint64_t z = (seed += 0x9e3779b97f4a7c15u);
-  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-  return z ^ z >> 31;
-}
+static uint64_t any(void) { return draw_bits(drawn++); }
 
 static long area(const long *a, const long *b, const long *c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -51,14 +47,14 @@ static int is_simple_by_pairs(const long (*p)[2], size_t n) {
 TEST(test_grid_polygons) {
   enum { MOST = 9, CASES = 300000 };
   int simple = 0;
-  seed = 1;
+  drawn = 1000000;
   for (int c = 0; c < CASES; c++) {
-    long p[MOST][2], size = 2 + (long)(draw() % 5);
+    long p[MOST][2], size = 2 + (long)(any() % 5);
     double points[2 * MOST];
-    size_t n = 3 + draw() % (MOST - 2), meet[2] = {99, 99};
+    size_t n = 3 + any() % (MOST - 2), meet[2] = {99, 99};
     int repeats = 0;
     for (size_t k = 0; k < n; k++)
-      for (int i = 0; i < 2; i++) points[2 * k + (size_t)i] = (double)(p[k][i] = (long)(draw() % (uint64_t)size));
+      for (int i = 0; i < 2; i++) points[2 * k + (size_t)i] = (double)(p[k][i] = (long)(any() % (uint64_t)size));
     for (size_t k = 0; k < n; k++) {
       const long *a = p[k], *b = p[(k + 1) % n];
       repeats |= a[0] == b[0] && a[1] == b[1];
@@ -85,9 +81,9 @@ TEST(test_large_polygon) {
   double *points = malloc(2 * N * sizeof *points);
   void *room = malloc(ethd__simple_room(N));
   size_t meet[2];
-  seed = 2;
+  drawn = 2000000;
   for (size_t k = 0; k < N; k++) {
-    double a = 2 * M_PI * (double)k / N, r = k % 2 ? 1e-3 : 0.5 + (double)(draw() % 1000) / 1000;
+    double a = 2 * M_PI * (double)k / N, r = k % 2 ? 1e-3 : 0.5 + (double)(any() % 1000) / 1000;
     points[2 * k] = r * cos(a);
     points[2 * k + 1] = r * sin(a);
   }
@@ -126,10 +122,10 @@ TEST(test_diagonal_comb) {
 
 /* a + k (b - a) in steps of powers of two is on the line; an ulp beside it isn't. */
 TEST(test_orientation_is_exact) {
-  seed = 3;
+  drawn = 3000000;
   for (int c = 0; c < 100000; c++) {
-    double ux = (double)(int64_t)(draw() >> 20) * 0x1p-44, uy = (double)(int64_t)(draw() >> 20) * 0x1p-44;
-    ethd_vec a = {0x1p-10 * (double)(int)(draw() % 1000), 0}, b = {ux, uy};
+    double ux = (double)(int64_t)(any() >> 20) * 0x1p-44, uy = (double)(int64_t)(any() >> 20) * 0x1p-44;
+    ethd_vec a = {0x1p-10 * (double)(int)(any() % 1000), 0}, b = {ux, uy};
     ethd_vec o = {0, 0}, far = {8 * b.x, 8 * b.y};
     ck_assert_int_eq(ethd__orient(o, b, far), 0);
     ck_assert_int_eq(ethd__orient(far, o, b), 0);
@@ -146,14 +142,14 @@ TEST(test_orientation_is_exact) {
 TEST(test_orientation_of_whole_numbers) {
   __extension__ typedef __int128 wide;
   int zeros = 0, others = 0;
-  seed = 4;
+  drawn = 4000000;
   for (int c = 0; c < 100000; c++) {
-    int64_t ux = (int64_t)(draw() % (1 << 24)) - (1 << 23), uy = (int64_t)(draw() % (1 << 24)) - (1 << 23);
+    int64_t ux = (int64_t)(any() % (1 << 24)) - (1 << 23), uy = (int64_t)(any() % (1 << 24)) - (1 << 23);
     int64_t p[3][2];
     for (int k = 0; k < 3; k++) {
-      int64_t t = (int64_t)(draw() % (1 << 28)) - (1 << 27);
-      p[k][0] = t * ux + (int64_t)(draw() % 16 == 0);
-      p[k][1] = t * uy + (int64_t)(draw() % 16 == 0);
+      int64_t t = (int64_t)(any() % (1 << 28)) - (1 << 27);
+      p[k][0] = t * ux + (int64_t)(any() % 16 == 0);
+      p[k][1] = t * uy + (int64_t)(any() % 16 == 0);
     }
     wide l = (wide)(p[1][0] - p[0][0]) * (p[2][1] - p[0][1]), r = (wide)(p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
     int expected = (l > r) - (l < r);
