@@ -1,4 +1,4 @@
-"""Parts of ethd-report that its tables can't show: the dip, exact tests against every case, what is escaped and refused."""
+"""Parts of ethd-report that its tables can't show: exact tests against every case, what is escaped and refused."""
 import csv
 import io
 import itertools
@@ -9,7 +9,6 @@ import pytest
 
 np = pytest.importorskip("numpy")
 pytest.importorskip("scipy")
-from scipy import optimize  # noqa: E402
 
 from ethd_programs.cli import Refusal  # noqa: E402
 from ethd_programs.report import statistics as st  # noqa: E402
@@ -20,63 +19,6 @@ from ethd_programs.report.page import Page  # noqa: E402
 from ethd_programs.report.pictures import _path, _string  # noqa: E402
 from ethd_programs.report.study import Table  # noqa: E402
 from ethd_programs.report.taps import _Reader  # noqa: E402
-
-
-def slow_dip(x):
-    """By linear programming: of all distribution functions with a mode at value k the nearest one; k takes each value."""
-    n, best = len(x), 1.0
-    for k in range(n):  # g: at x[0] .. x[k - 1], just before x[k], at x[k] .. x[n - 1]; then the distance
-        rows, bounds = [], []
-
-        def at_most(bound, **terms):
-            row = np.zeros(n + 2)
-            for name, value in terms.items():
-                row[int(name[1:])] += value
-            rows.append(row)
-            bounds.append(bound)
-
-        d = f"g{n + 1}"
-        for i in range(n + 1):
-            g = f"g{i}"
-            after, before = (i + 1, i) if i < k else (None, k) if i == k else (i, i - 1)
-            at_most(before / n, **{g: 1, d: -1})
-            if after is not None:
-                at_most(-after / n, **{g: -1, d: -1})
-            if i:
-                at_most(0, **{f"g{i - 1}": 1, g: -1})
-        for first, last, sign in ((0, k, 1), (k, n - 1, -1)):  # convex before the mode, concave behind it
-            for i in range(first + 1, last):
-                a, b, c = (f"g{j + (sign < 0)}" for j in (i - 1, i, i + 1))
-                h, g = x[i] - x[i - 1], x[i + 1] - x[i]
-                at_most(0, **{a: -sign / h, b: sign * (1 / h + 1 / g), c: -sign / g})
-        cost = np.zeros(n + 2)
-        cost[-1] = 1
-        found = optimize.linprog(cost, A_ub=np.array(rows), b_ub=bounds, bounds=(0, 1), method="highs")
-        best = min(best, found.fun) if found.status == 0 else best
-    return best
-
-
-def test_dip_is_the_distance_to_the_nearest_distribution_with_one_mode():
-    rng = np.random.default_rng(1)
-    for n in (4, 8, 13, 20):
-        x = np.sort(rng.normal(size=n) + 3 * (rng.random(n) < 0.5))
-        assert st.dip(x) == pytest.approx(slow_dip(x), abs=1e-9)
-    assert st.dip(np.array([1.0, 1, 1])) == pytest.approx(1 / 6)
-    assert math.isnan(st.dip(np.array([])))
-    assert st.dip(np.repeat([0.0, 1.0], 50)) == pytest.approx(0.25, abs=1e-3)
-
-
-def test_quantiles_of_the_dip_are_those_of_uniform_samples():
-    rng = np.random.default_rng(2)
-    for n in (11, 40, 300):
-        p = np.array([st.dip_share(st.dip(np.sort(rng.random(n))), n) for _ in range(400)])
-        for share in (0.1, 0.5, 0.9):  # five standard deviations
-            assert abs(np.mean(p <= share) - share) < 5 * math.sqrt(share * (1 - share) / 400)
-    assert math.isnan(st.dip_share(0.1, 7)) and st.dip_share(0.25, 100) == 1e-4
-
-
-def test_equal_values_are_spread_over_their_step():
-    assert st.spread(np.array([3.0, 2, 3]), 1).tolist() == pytest.approx([2, 2.75, 3.25])
 
 
 def test_wilcoxon_tries_all_signs():

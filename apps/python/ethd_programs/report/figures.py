@@ -7,10 +7,10 @@ from ethd_programs.cli import plural
 from ethd_programs.report.coverage import known
 from ethd_programs.report.output import Cell as Text
 from ethd_programs.report.output import harmless
-from ethd_programs.report.page import interval_text, mean_text, number_text, p_text
+from ethd_programs.report.page import interval_text, mean_text, number_text
 from ethd_programs.report.pictures import Path
 from ethd_programs.report.report import Report
-from ethd_programs.report.statistics import FEWEST_PEOPLE, NAN, Clusters, dip, dip_share, median, spread, summarise
+from ethd_programs.report.statistics import FEWEST_PEOPLE, NAN, Clusters, median, summarise
 from ethd_programs.report.taps import QUANTITIES, REASONS, Cell, Quantity, Taps
 
 _DOTS = 300  # that are drawn for a cell; of more taps only each k-th is shown
@@ -82,7 +82,7 @@ def _pictures(r: Report, taps: Taps, prefix: str, whose: str) -> None:
     if any(len(c.values(QUANTITIES["delta_s"])) for c in taps.cells):
         _draw_boxes(r, taps, prefix, "braking", "delta_s eps", f"Braking: {whose}",
                     f"Time of braking and offset of the wall, {whose}: what Table 1 sums up. Where the dots make two heaps, the "
-                    "mean between them describes no tap; the table of all figures marks such cells.")
+                    "mean between them describes no tap.")
 
 
 def boxes(r: Report) -> None:
@@ -101,11 +101,6 @@ def boxes(r: Report) -> None:
 # ---- every figure ----
 
 
-def _heaps(p: float) -> str:
-    text = p_text(p)
-    return f"more than one, p {text}" if p < 1e-4 else f"more than one, p = {text}" if p < 0.05 else text
-
-
 def _summary(r: Report) -> None:
     people = len(r.taps.people)
     if people < FEWEST_PEOPLE:
@@ -113,27 +108,25 @@ def _summary(r: Report) -> None:
                    "smallest and largest of them, and hold the truth in about %.0f %%, not 95 %%, of such studies.</p>\n",
                    people, plural(people), 100 * known(people).median)
     r.page.table("Every figure by cell: valid test taps", ("cell", "n (people)", "mean (sd)", "median", "quartiles", "extremes",
-                                                           "median, 95 %", "heaps (dip p)"), 1)
+                                                           "median, 95 %"), 1)
     rows: List[List[Text]] = []
     for q in QUANTITIES.values():
         found = [(cell, cell.of(q)) for cell in r.taps.cells]
         found = [(cell, values) for cell, values in found if not np.isnan(values).all()]
         if found:
-            r.page.span(f"{q.title} ({q.key}), {q.unit}", 8)
+            r.page.span(f"{q.title} ({q.key}), {q.unit}", 7)
         for cell, values in found:
             there = ~np.isnan(values)
             s = summarise(values[there])
             clusters = Clusters(values[there], cell.person[there], np.zeros(s.n, np.int64))
             interval = clusters.interval(median, r.seed)
-            hartigan = dip(spread(values[there], q.grain) if q.grain else np.sort(values[there]))
-            heaps = dip_share(hartigan, s.n)
             d = q.digits
             r.page.row(cell.label, f"{s.n} ({clusters.people})", mean_text(s.n, s.mean, s.sd, d), number_text(s.median, d),
-                       interval_text(s.q1, s.q3, d), interval_text(s.min, s.max, d), interval_text(interval.low, interval.high, d), _heaps(heaps))
+                       interval_text(s.q1, s.q3, d), interval_text(s.min, s.max, d), interval_text(interval.low, interval.high, d))
             rows.append([q.key, q.unit, cell.law, cell.speed.word, s.n, clusters.people, s.mean, s.sd, s.min, s.q1, s.median, s.q3, s.max,
-                         interval.low, interval.high, hartigan, heaps])
+                         interval.low, interval.high])
     r.page.end_table()
-    r.output.table("summary.csv", "metric,unit,transition,speed,n,participants,mean,sd,min,q1,median,q3,max,median_low,median_high,dip,dip_p", rows)
+    r.output.table("summary.csv", "metric,unit,transition,speed,n,participants,mean,sd,min,q1,median,q3,max,median_low,median_high", rows)
 
 
 # ---- reasons, validity ----

@@ -74,7 +74,6 @@ class Quantity:
     title: str
     unit: str
     digits: int
-    grain: float  #: in which it is counted, 0: it is continuous
     of: Callable[[Dict[str, Numbers]], Numbers]
 
     @property
@@ -92,17 +91,17 @@ def _plain(column: str) -> Callable[[Dict[str, Numbers]], Numbers]:
 
 
 QUANTITIES = {q.key: q for q in (
-    Quantity("v_rvo", "Ring's speed as it meets the wall", "m/s", 3, 0, _plain("v_rvo_mps")),
-    Quantity("v_of", "Ring's speed as the finger touches it", "m/s", 3, 0, _plain("v_of_mps")),
-    Quantity("d_max", "First rebound", "mm", 3, 0, _milli("d_max_m")),
-    Quantity("v_rmin", "Ring's smallest speed after the touch", "m/s", 3, 0, _plain("v_rmin_mps")),
-    Quantity("delta_s", "Time of braking", "ms", 2, 1, _plain("delta_s_ms")),
-    Quantity("eps", "Offset of the wall", "mm", 3, 0, _milli("eps_m")),
-    Quantity("delay", "Touch felt after it is seen", "ms", 1, 1, lambda t: 1e3 * (t["t_of_s"] - t["t_seen_s"])),
-    Quantity("peak_force", "Largest force that the wall asks for", "N", 2, 0, _plain("peak_force_n")),
-    Quantity("v_hand", "Hand's own speed at the touch plane", "m/s", 3, 0, _plain("v_hand_mps")),
-    Quantity("touch_depth", "Ring behind the wall at the touch", "mm", 3, 0, _milli("touch_depth_m")),
-    Quantity("eps_felt", "Offset of the wall 60 ms after the touch", "mm", 3, 0, _milli("eps_felt_m")),
+    Quantity("v_rvo", "Ring's speed as it meets the wall", "m/s", 3, _plain("v_rvo_mps")),
+    Quantity("v_of", "Ring's speed as the finger touches it", "m/s", 3, _plain("v_of_mps")),
+    Quantity("d_max", "First rebound", "mm", 3, _milli("d_max_m")),
+    Quantity("v_rmin", "Ring's smallest speed after the touch", "m/s", 3, _plain("v_rmin_mps")),
+    Quantity("delta_s", "Time of braking", "ms", 2, _plain("delta_s_ms")),
+    Quantity("eps", "Offset of the wall", "mm", 3, _milli("eps_m")),
+    Quantity("delay", "Touch felt after it is seen", "ms", 1, lambda t: 1e3 * (t["t_of_s"] - t["t_seen_s"])),
+    Quantity("peak_force", "Largest force that the wall asks for", "N", 2, _plain("peak_force_n")),
+    Quantity("v_hand", "Hand's own speed at the touch plane", "m/s", 3, _plain("v_hand_mps")),
+    Quantity("touch_depth", "Ring behind the wall at the touch", "mm", 3, _milli("touch_depth_m")),
+    Quantity("eps_felt", "Offset of the wall 60 ms after the touch", "mm", 3, _milli("eps_felt_m")),
 )}
 
 

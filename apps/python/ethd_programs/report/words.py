@@ -164,8 +164,6 @@ _METHODS = (
     "each. They are shown from six participants on.",
     "Survey answers are ordinal: counts, medians and quartiles; strategies are compared by Wilcoxon's signed rank test with Pratt's treatment of "
     "equal answers, exact; three or more by Friedman's test.",
-    "Two heaps: Hartigan's dip, with a p from quantiles of a uniform sample, the least favourable one with a single heap. Times are counted in "
-    "ticks of 1 ms, so equal ones are spread evenly over their tick first. A p under 0.05 is marked: there the mean describes no typical tap.",
     "n points into the wall: speeds are positive toward it, negative away. The instant of sight is the one at which the finger's front reaches the "
     "wall that a screen without delay would show.",
 )
