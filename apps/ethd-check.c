@@ -109,39 +109,34 @@ static const ethd_setting *setting(const ethd_config *config, const char *key) {
   return NULL;
 }
 
-typedef struct checked_device {
-  const ethd_driver *driver;
-  void *device;
-} checked_device;
-
-static checked_device reach_device(const ethd_config *config) {
+static ethd_device *reach_device(const ethd_config *config) {
   char message[ETHD_MESSAGE_MAX];
-  checked_device d;
+  ethd_device *d;
   const ethd_device_def def = {&config->setup, config->settings, config->setting_count, config->folder, arg.config, 0};
-  ethd_status status = arg.open ? ethd_device_open(config->device, NULL, &def, &d.driver, &d.device, message)
-                                : ethd_device_prepare(config->device, &def, &d.driver, &d.device, message);
+  ethd_status status = arg.open ? ethd_device_open(config->device, NULL, &def, &d, message)
+                                : ethd_device_prepare(config->device, &def, &d, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
   return d;
 }
 
 /* From now on the setup is the one that the loop would run: the device narrows its limits, and adds what moves it. */
-static void take_over(const checked_device *d, ethd_setup *setup) {
-  ethd_limits limits = d->driver->limits(d->device);
-  ethd_dynamics dynamics = d->driver->dynamics(d->device);
+static void take_over(const ethd_device *d, ethd_setup *setup) {
+  ethd_limits limits = ethd_device_limits(d);
+  ethd_dynamics dynamics = ethd_device_dynamics(d);
   setup->limits = ethd_limits_narrower(&limits, &setup->limits);
   setup->dynamics = ethd_dynamics_known(&dynamics, &setup->dynamics);
 }
 
 /* Returns the largest of the figures of this name. */
-static double named(const checked_device *d, const char *name) {
+static double named(const ethd_device *d, const char *name) {
   static ethd_figure all[ETHD_FIGURES_MAX];
   double most = NAN;
-  for (uint32_t i = 0, n = d->driver->figures(d->device, all, ETHD_FIGURES_MAX); i < n; i++)
+  for (uint32_t i = 0, n = ethd_device_figures(d, all, ETHD_FIGURES_MAX); i < n; i++)
     if (strstr(all[i].name, name)) most = fmax(most, all[i].value);
   return most;
 }
 
-static void from_drivers(const checked_device *d, const ethd_setup *setup, ethd__figures *f) {
+static void from_drivers(const ethd_device *d, const ethd_setup *setup, ethd__figures *f) {
   const ethd_dynamics *known = &setup->dynamics;
   f->loop.friction = known->friction;
   f->loop.viscous = known->viscous;
@@ -169,7 +164,7 @@ static void option(const char *name, const char *text, double max, double *out) 
 }
 
 /* `asked` is the torque that the configuration allows, Nm, whatever its device does. */
-static ethd__figures figures(const ethd_config *config, const checked_device *d, double asked) {
+static ethd__figures figures(const ethd_config *config, const ethd_device *d, double asked) {
   const ethd_setup *setup = &config->setup;
   ethd__figures f = {.loop = {.mass = {NAN, NAN}, .delay = NAN, .friction = NAN, .viscous = NAN, .count = NAN},
                      .force = {NAN, NAN},
@@ -201,16 +196,15 @@ static void check(void) {
   ethd__container_keeper(); /* what is said of the guardian holds for ethd-run */
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
-  checked_device device = reach_device(config);
+  ethd_device *device = reach_device(config);
   printf("; %s is valid\n\n", arg.config);
   ethd__report_setup(config);
   double asked = config->setup.limits.torque;
-  take_over(&device, &config->setup);
-  ethd__subject subject = {.config = config, .device = figures(config, &device, asked)};
+  take_over(device, &config->setup);
+  ethd__subject subject = {.config = config, .device = figures(config, device, asked)};
   printf("\n");
-  ethd__report_drivers(config, device.driver, device.device, arg.open);
-  if (isnan(subject.device.loop.delay))
-    ethd__find_delay(&config->setup, device.driver, device.device, arg.open, &subject.device);
+  ethd__report_drivers(config, device, arg.open);
+  if (isnan(subject.device.loop.delay)) ethd__find_delay(&config->setup, device, arg.open, &subject.device);
   ethd__report_device(&subject);
   int exceeded = ethd__report_stability(&config->setup, &subject.device.loop);
   exceeded += ethd__report_passivity(&subject);
@@ -221,7 +215,7 @@ static void check(void) {
   if (config->setup.scene) ethd__scene_say_thin(config->setup.scene, "\nscene        ");
   printf("\n%d bound%s exceeded\n", exceeded, exceeded == 1 ? "" : "s");
   ethd__report_unjudged(&config->setup);
-  device.driver->close(device.device);
+  ethd_device_close(device);
   ethd_config_free(config);
 }
 

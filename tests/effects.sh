@@ -45,6 +45,6 @@ seed() { # NAME SOURCE SED
 }
 seed heap lib/control/control.c 's|^  t.soft = take_clear(control);|  free(malloc(1));&|; 1i #include <stdlib.h>' "'malloc'"
 seed inferred lib/arm.c 's|^static double wrap.*{|&\n  putchar(10);|; 1i #include <stdio.h>' "'wrap'"
-seed pointer drivers/runtime/loop/cycle.c 's|l->def.driver->write(|l->def.driver->stop(l->def.device), &|' 'non-.nonblocking'
+seed pointer drivers/runtime/device/device.c 's|d->at.i..driver->write(|d->at[i].driver->stop(d->at[i].state), \&|' 'non-.nonblocking'
 seed lock drivers/runtime/loop/cycle.c 's|^  raise(&l->stats.ticks, 1);|  pthread_mutex_lock(0);&|' "'pthread_mutex_lock'"
 exit $failed

@@ -13,10 +13,10 @@ static void limit(const char *name, double value, const char *unit, double scale
 }
 
 /* Where the device says that its joints stand; it was asked once, when it was opened. */
-static void joints(const ethd_config *config, const ethd_driver *driver, void *device) {
+static void joints(const ethd_config *config, ethd_device *device) {
   ethd_sense sense = {.time_ns = 0};
   ethd_pose pose;
-  if (driver->read(device, ethd__clock_now(), &sense) != ETHD_OK) {
+  if (ethd_device_read(device, ethd__clock_now(), &sense) != ETHD_OK) {
     printf("joints       not known before it is enabled\n");
     return;
   }
@@ -25,13 +25,13 @@ static void joints(const ethd_config *config, const ethd_driver *driver, void *d
          pose.x.y);
 }
 
-void ethd__report_drivers(const ethd_config *config, const ethd_driver *driver, void *device, bool is_open) {
+void ethd__report_drivers(const ethd_config *config, ethd_device *device, bool is_open) {
   const ethd_limits *l = &config->setup.limits;
   const char *remark;
   printf("drivers      %s: %s\n", config->device,
          is_open ? "opened, nothing enabled" : "read, not touched (--open asks the device)");
-  for (uint32_t i = 0; (remark = driver->remark(device, i)); i++) printf("             %s\n", remark);
-  if (is_open) joints(config, driver, device);
+  for (uint32_t i = 0; (remark = ethd_device_remark(device, i)); i++) printf("             %s\n", remark);
+  if (is_open) joints(config, device);
   limit("limits       torque", l->torque, "Nm", 1);
   limit(", speed", l->speed, "m/s", 1);
   limit(", gap between samples", l->gap, "ms", 1e3);

@@ -27,13 +27,12 @@ typedef struct ethd__subject {
 
 /* Prints what the device's drivers say: their remarks, and the limits that rule. is_open: the device itself was
    asked. */
-void ethd__report_drivers(const ethd_config *config, const ethd_driver *driver, void *device, bool is_open);
+void ethd__report_drivers(const ethd_config *config, ethd_device *device, bool is_open);
 
 /* Sets the delay that no option, driver or plant gives. Of an open device it measures the longest spacing of samples.
    Otherwise, or if too few samples come, it takes the longest spacing that the limits allow. `figures` tells which.
    Nothing is enabled. */
-void ethd__find_delay(const ethd_setup *setup, const ethd_driver *driver, void *device, bool is_open,
-                      ethd__figures *figures);
+void ethd__find_delay(const ethd_setup *setup, ethd_device *device, bool is_open, ethd__figures *figures);
 
 /* Fills `felt`, and prints what is known. */
 void ethd__report_device(ethd__subject *subject);

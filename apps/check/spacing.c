@@ -13,8 +13,7 @@
 #define PAUSE 200000 /* ns after a service that had nothing to do */
 
 typedef struct io {
-  const ethd_driver *driver;
-  void *device;
+  ethd_device *device;
   uint32_t unit;
   atomic_bool *ends;
 } io;
@@ -23,20 +22,20 @@ typedef struct io {
 static void *serve(void *context) {
   const io *u = context;
   while (!atomic_load(u->ends))
-    if (u->driver->service(u->device, u->unit, ethd__clock_now()) != ETHD_OK)
+    if (ethd_device_service(u->device, u->unit, ethd__clock_now()) != ETHD_OK)
       nanosleep(&(struct timespec){.tv_nsec = PAUSE}, NULL);
   return NULL;
 }
 
 /* Reads at every period as the loop does and returns the longest spacing of two samples, s; NAN: too few came. */
-static double watch(const ethd_driver *driver, void *device, double period) {
+static double watch(ethd_device *device, double period) {
   double most = 0;
   int64_t begin = ethd__clock_now(), due = begin, last = 0;
   int samples = 0;
   while (due - begin < (int64_t)(1e9 * DURATION)) {
     ethd_sense sense = {.time_ns = 0};
     int64_t now = ethd__clock_now();
-    if (driver->read(device, now, &sense) == ETHD_OK && sense.time_ns != last) {
+    if (ethd_device_read(device, now, &sense) == ETHD_OK && sense.time_ns != last) {
       if (samples++) most = fmax(most, 1e-9 * (double)(sense.time_ns - last));
       last = sense.time_ns;
     }
@@ -47,24 +46,23 @@ static double watch(const ethd_driver *driver, void *device, double period) {
   return samples < SAMPLES ? NAN : most;
 }
 
-static double measure(const ethd_setup *setup, const ethd_driver *driver, void *device) {
+static double measure(const ethd_setup *setup, ethd_device *device) {
   pthread_t threads[ETHD_UNITS_MAX];
   io units[ETHD_UNITS_MAX];
   atomic_bool ends = false;
-  uint32_t n = driver->units ? driver->units(device) : 0, begun = 0;
+  uint32_t n = ethd_device_units(device), begun = 0;
   for (; begun < n; begun++) {
-    units[begun] = (io){driver, device, begun, &ends};
+    units[begun] = (io){device, begun, &ends};
     if (pthread_create(&threads[begun], NULL, serve, &units[begun])) break;
   }
-  double spacing = begun == n ? watch(driver, device, setup->period) : NAN;
+  double spacing = begun == n ? watch(device, setup->period) : NAN;
   atomic_store(&ends, true);
   for (uint32_t i = 0; i < begun; i++) pthread_join(threads[i], NULL);
   return spacing;
 }
 
-void ethd__find_delay(const ethd_setup *setup, const ethd_driver *driver, void *device, bool is_open,
-                      ethd__figures *figures) {
-  double spacing = is_open ? measure(setup, driver, device) : NAN, gap = setup->limits.gap;
+void ethd__find_delay(const ethd_setup *setup, ethd_device *device, bool is_open, ethd__figures *figures) {
+  double spacing = is_open ? measure(setup, device) : NAN, gap = setup->limits.gap;
   if (!isnan(spacing)) {
     figures->loop.delay = spacing;
     snprintf(figures->delay_is, sizeof figures->delay_is,

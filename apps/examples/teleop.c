@@ -129,8 +129,8 @@ int main(int argc, char **argv) {
   if (fd < 0) return fail(argv[1], strerror(errno));
   if (signal(SIGINT, end) == SIG_IGN) signal(SIGINT, SIG_IGN); /* a shell's & has it ignored */
   signal(SIGTERM, end);
-  if (ethd_device_open("sim, link", drivers, &device, &def.driver, &def.device, text)) return fail("device", text);
-  setup.limits = def.driver->limits(def.device);
+  if (ethd_device_open("sim, link", drivers, &device, &def.device, text)) return fail("device", text);
+  setup.limits = ethd_device_limits(def.device);
   setup.limits.energy = 0.02; /* J: with the surface's own work */
   if (meet(fd, &e)) return 1;
   far = e.last;
@@ -138,12 +138,12 @@ int main(int argc, char **argv) {
   if (ethd_cell_create(sizeof far, &newest, &error) || ethd_control_create(&setup, &def.control, &error) ||
       ethd_loop_create(&def, &loop, &error))
     return fail("loop", error.name);
-  int code = def.driver->start(def.device) || ethd_loop_start(loop, &error)
+  int code = ethd_device_start(def.device) || ethd_loop_start(loop, &error)
                  ? fail("start", error.name)
                  : lead(fd, &e, loop, def.control, &setup, seconds);
-  if (def.driver->stop(def.device) < 0) code = fail("device", "it doesn't stop");
+  if (ethd_device_stop(def.device) < 0) code = fail("device", "it doesn't stop");
   ethd_loop_destroy(loop);
   ethd_control_destroy(def.control);
-  def.driver->close(def.device);
+  ethd_device_close(def.device);
   return code;
 }

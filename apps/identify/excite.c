@@ -160,13 +160,12 @@ static int record(const ethd__excitation *x, const ethd_config *c, double torque
 
 static double torque_limit(const ethd__excitation *x, const ethd_config *c) {
   char message[ETHD_MESSAGE_MAX];
-  const ethd_driver *driver;
-  void *device;
+  ethd_device *device;
   const ethd_device_def def = {&c->setup, c->settings, c->setting_count, c->folder, c->path, x->is_virtual};
-  ethd_status status = ethd_device_open(c->device, NULL, &def, &driver, &device, message);
+  ethd_status status = ethd_device_open(c->device, NULL, &def, &device, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
-  ethd_limits limits = driver->limits(device);
-  driver->close(device);
+  ethd_limits limits = ethd_device_limits(device);
+  ethd_device_close(device);
   double most = fmin(limits.torque, c->setup.limits.torque);
   if (!isnan(x->torque)) most = fmin(most, x->torque);
   if (!isfinite(most))

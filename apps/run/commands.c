@@ -84,7 +84,7 @@ static const char *latched(ethd__session *s) {
    long enough; where the device had a fault, that is at the second ack. */
 static void ack(ethd__session *s, ethd__commands *c, char *rest) {
   (void)c, (void)rest;
-  s->driver->clear(s->device);
+  ethd_device_clear(s->device);
   if (!faulty(s)) {
     answer("error: there is no fault to acknowledge");
     return;
@@ -109,7 +109,7 @@ static void enable(ethd__session *s, ethd__commands *c, char *rest) {
     answer("error: a fault is latched: %s; ack comes first", latched(s));
   } else {
     ethd_status failure = ethd__session_enable(s);
-    const char *why = s->driver->why(s->device);
+    const char *why = ethd_device_why(s->device);
     if (failure)
       answer("error: starting the device again: %s%s%s", ethd_status_sentence(failure), why[0] ? ": " : "", why);
     else
@@ -133,7 +133,7 @@ static void home(ethd__session *s, ethd__commands *c, char *rest) {
     return;
   }
   ethd_status failure = ethd_loop_home(s->loop, *rest ? q : NULL);
-  const char *why = s->driver->why(s->device);
+  const char *why = ethd_device_why(s->device);
   if (failure)
     answer("error: %s%s%s", ethd_status_sentence(failure), why[0] ? ": " : "", why);
   else

@@ -172,7 +172,7 @@ static ethd_status end_loop(ethd__session *s, char *message) {
 
 ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = s->loop ? end_loop(s, message) : ETHD_OK;
-  ethd_status stopped = s->started && !s->lost ? s->driver->stop(s->device) : ETHD_OK;
+  ethd_status stopped = s->started && !s->lost ? ethd_device_stop(s->device) : ETHD_OK;
   if (stopped < 0 && !status)
     status = ethd__say(message, stopped, "device %s: stop: %s", s->config->device, ethd_status_sentence(stopped));
   s->started = false;
@@ -187,7 +187,7 @@ void ethd__session_free(ethd__session *s) {
   ethd__snapshot_close(&s->recorder.snapshot);
   if (s->left) return;
   ethd_loop_destroy(s->loop);
-  if (s->device) s->driver->close(s->device);
+  if (s->device) ethd_device_close(s->device);
   ethd_control_destroy(s->control);
   if (s->config) ethd_config_free(s->config);
 }

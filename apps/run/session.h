@@ -9,8 +9,7 @@
 
 typedef struct ethd__session {
   ethd_config *config;
-  const ethd_driver *driver;
-  void *device;
+  ethd_device *device;
   ethd_setup setup; /* the one that was posted last */
   ethd_control *control;
   ethd_loop *loop;

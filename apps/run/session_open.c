@@ -18,12 +18,12 @@ static ethd_status open_device(ethd__session *s, const char *folder, char *messa
   const ethd_device_def def = {&s->config->setup,        s->config->settings,
                                s->config->setting_count, folder ? folder : s->config->folder,
                                s->config->path,          s->is_virtual};
-  ethd_status status = ethd_device_open(s->config->device, NULL, &def, &s->driver, &s->device, message);
+  ethd_status status = ethd_device_open(s->config->device, NULL, &def, &s->device, message);
   if (status) return status;
-  const ethd_limits limits = s->driver->limits(s->device);
+  const ethd_limits limits = ethd_device_limits(s->device);
   s->setup = s->config->setup;
   s->setup.limits = ethd_limits_narrower(&limits, &s->config->setup.limits);
-  const ethd_dynamics dynamics = s->driver->dynamics(s->device);
+  const ethd_dynamics dynamics = ethd_device_dynamics(s->device);
   s->setup.dynamics = ethd_dynamics_known(&dynamics, &s->config->setup.dynamics);
   status = ethd_control_create(&s->setup, &s->control, &error);
   if (status) ethd_error_text(s->config->path, &error, message);
@@ -66,7 +66,7 @@ static ethd_status open_recorder(ethd__session *s, const ethd__session_options *
 }
 
 static ethd_status refuse_device(const ethd__session *s, ethd_status status, char *message) {
-  const char *why = s->driver->why(s->device);
+  const char *why = ethd_device_why(s->device);
   return ethd__say(message, status, "device %s: start: %.*s", s->config->device, ETHD_MESSAGE_MAX / 2,
                    why[0] ? why : ethd_status_sentence(status));
 }
@@ -74,7 +74,6 @@ static ethd_status refuse_device(const ethd__session *s, ethd_status status, cha
 static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, char *message) {
   ethd_loop_def def = o->loop;
   ethd_error error = {0};
-  def.driver = s->driver;
   def.device = s->device;
   def.control = s->control;
   def.period = s->setup.period;
@@ -89,8 +88,8 @@ static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, c
   }
   s->recorder.loop = s->loop;
   ethd__recorder_begin(&s->recorder, def.period);
-  if (o->home) status = s->driver->home(s->device, NULL);
-  if (!status) status = s->driver->start(s->device);
+  if (o->home) status = ethd_device_home(s->device, NULL);
+  if (!status) status = ethd_device_start(s->device);
   if (status) return refuse_device(s, status, message);
   s->started = true;
   status = ethd_loop_start(s->loop, &error);

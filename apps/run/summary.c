@@ -39,7 +39,7 @@ void ethd__remarks_print(FILE *out, ethd__session *s) {
   const char *remark;
   int32_t shortfalls = s->is_virtual ? 0 : ethd_loop_shortfalls(s->loop);
   int next = 0;
-  for (uint32_t i = 0; (remark = s->driver->remark(s->device, i)) != NULL; i++) tell(out, remark, &next);
+  for (uint32_t i = 0; (remark = ethd_device_remark(s->device, i)) != NULL; i++) tell(out, remark, &next);
   if (!s->is_virtual && !ethd__session_sees_finger(s))
     tell(out,
          "nothing measures the finger: the ring stands and follows nothing; name a driver that does, as in driver = "
@@ -95,7 +95,7 @@ static void print_device(FILE *out, const ethd_loop_stats *stats) {
 /* Prints the device's own figures, durations in ms. */
 static void print_figures(FILE *out, const ethd__session *s) {
   static ethd_figure figures[ETHD_FIGURES_MAX];
-  uint32_t n = s->driver->figures(s->device, figures, ETHD_FIGURES_MAX);
+  uint32_t n = ethd_device_figures(s->device, figures, ETHD_FIGURES_MAX);
   for (uint32_t i = 0; i < n; i++) {
     bool is_time = !strcmp(figures[i].unit, "s");
     const char *unit = is_time ? "ms" : strcmp(figures[i].unit, "1") ? figures[i].unit : "";

@@ -1,21 +1,37 @@
-/* Injects faults by a script: this device wraps any other, between that device and the loop, and changes the samples
-   and commands that pass as a broken device would.
+/* Injects faults by a script: between the drivers of a device and its user it changes the samples and commands that
+   pass, as a broken device would.
 
        [device]
        driver = servo, ring
-       inject = broken.inject        ethd_device_open puts this driver around those
-
-   Its device is made by ethd__inject_around, not by open. */
+       inject = broken.inject */
 #ifndef ETHD__INJECT_INJECT_H
 #define ETHD__INJECT_INJECT_H
 
 #include "inject/script.h"
 
-extern const ethd_driver ethd__driver_inject;
+typedef struct ethd__inject ethd__inject;
 
-/* Takes over the open `device` of `driver` and the script; when it fails, with ETHD_E_MEMORY, it has closed and freed
-   them. [main] */
-ETHD_MUST_CHECK ethd_status ethd__inject_around(const ethd_driver *driver, void *device, ethd__script *script,
-                                                void **out);
+/* Takes over the script. NULL: no memory, and the script stays the caller's. [main] */
+ethd__inject *ethd__inject_create(const ethd__script *script);
+void ethd__inject_free(ethd__inject *inject);
+
+/* Begin anew: the script counts from the next sample. A failure is injected. [main] */
+ETHD_MUST_CHECK ethd_status ethd__inject_start(ethd__inject *inject);
+
+/* Before the drivers are read: empties *out and raises faults in it. A failure is injected; a positive status: the
+   drivers aren't to be read. [rt] */
+ETHD_MUST_CHECK ethd_status ethd__inject_before(ethd__inject *inject, int64_t now_ns, ethd_sense *out) ETHD_RT;
+
+/* After that, with the drivers' status: changes *sense and adds it to *out. [rt] */
+void ethd__inject_after(ethd__inject *inject, ethd_status status, ethd_sense *sense, ethd_sense *out) ETHD_RT;
+
+/* Changes a command. A failure is injected; a positive status: the command is dropped. [rt] */
+ETHD_MUST_CHECK ethd_status ethd__inject_command(ethd__inject *inject, ethd_command *command) ETHD_RT;
+
+/* Returns what a unit's service returns in place of its work; ETHD_OK: it does its work. [any I/O thread] */
+ETHD_MUST_CHECK ethd_status ethd__inject_service(const ethd__inject *inject, int64_t now_ns);
+
+/* Returns how many faults were injected. [main] */
+ethd_figure ethd__inject_figure(const ethd__inject *inject);
 
 #endif

@@ -15,7 +15,7 @@
 
         [device]                                  ethd_device_open
         driver = servo, ring                        servo  --.
-        servo.map = svd48v.map                               +--> one driver, one device
+        servo.map = svd48v.map                               +--> one ethd_device
         ring.port = /dev/ttyUSB0                    ring   --'
 
    A driver may be a file of its own, a shared object (driver = servo, file:mine.so), so that what needs a vendor's SDK
@@ -142,26 +142,61 @@ extern ETHD_API const ethd_driver ethd_driver_plugin;
 
 #define ETHD_DRIVER_MIN (offsetof(ethd_driver, limits) + sizeof(void (*)(void)))
 
+/* ---- a device: one or several drivers that are open ---- */
+
+typedef struct ethd_device ethd_device;
+
 /* Opens the drivers that `ids` names ("sim", "servo, ring", "servo, file:mine.so"), in that order, out of `from` (ended
    by NULL; NULL: ethd_drivers) and of files, whose paths start at def->folder, as one. With several, a setting's key
-   carries its driver's id ("ring.port"); with one it may. *driver and *device then go together, and *driver has all
-   functions but open; device is closed by driver->close. Limits are the narrowest of all. Before a driver is opened its
+   carries its driver's id ("ring.port"); with one it may. Before a driver is opened its
    table is checked: size, ABI, id, brief, settings, and functions that need each other (write and safe, units and
    service): ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_ARGUMENT, ETHD_E_TABLE. ETHD_E_UNKNOWN, ETHD_E_DUPLICATE: an id, or a
    driver's key, with and without its id; ETHD_E_FILE, ETHD_E_LOAD, ETHD_E_SYMBOL: a file; ETHD_E_FULL: more than
    ETHD_DRIVERS_MAX, or units; ETHD_E_ARGUMENT: one joint alone is measured; else what the driver's open returns.
-   message holds one line. In a child that the process makes by fork, *driver's start, stop, home and service refuse
-   (ETHD_E_DEVICE), and close frees without calling the drivers, since the device stays the parent's. [main] */
+   message holds one line. On failure *out is NULL. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from,
-                                                      const ethd_device_def *def, const ethd_driver **driver,
-                                                      void **device, char message[ETHD_MESSAGE_MAX]);
+                                                      const ethd_device_def *def, ethd_device **out,
+                                                      char message[ETHD_MESSAGE_MAX]);
 
 /* The same by the drivers' `prepare`, which touches nothing. Of a driver without it only the name is checked, and its
-   remark says so. *device may be asked for limits, dynamics, figures and remarks, and closed. Fails as
+   remark says so. *out may be asked for limits, dynamics, figures and remarks, and closed. Fails as
    ethd_device_open does (ETHD_E_...). [main] */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_prepare(const char *ids, const ethd_device_def *def,
-                                                         const ethd_driver **driver, void **device,
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_prepare(const char *ids, const ethd_device_def *def, ethd_device **out,
                                                          char message[ETHD_MESSAGE_MAX]);
+
+/* Closes the drivers and frees the device; NULL: does nothing. In a child that the process made by fork it frees
+   without calling the drivers, since they stay the parent's; start, stop, home and service refuse there
+   (ETHD_E_DEVICE). [main] */
+ETHD_API void ethd_device_close(ethd_device *device);
+
+/* Do what the functions of ethd_driver of that name do, with all drivers of the device. A start that fails stops what
+   had started; a driver without stop is made safe. q: rad. home:
+   ETHD_E_ARGUMENT where no driver has one. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_start(ethd_device *device);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_stop(ethd_device *device);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_home(ethd_device *device, const double q[2]);
+
+/* Read and write all drivers. The worst status counts: a driver's ETHD_E_..., ETHD_STATUS_STALE. [rt] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_read(ethd_device *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_write(ethd_device *device, int64_t now_ns,
+                                                       const ethd_command *command) ETHD_RT;
+
+/* Makes all drivers safe; asks all of them to clear their own faults. [any] */
+ETHD_API void ethd_device_safe(ethd_device *device) ETHD_RT;
+ETHD_API void ethd_device_clear(ethd_device *device);
+
+/* Returns how many units of blocking I/O the drivers have together; does one piece of I/O of one of them. Each unit has
+   one caller. ETHD_E_ARGUMENT: no such unit; else what the driver returns. [any] */
+ETHD_API uint32_t ethd_device_units(const ethd_device *device);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_service(ethd_device *device, uint32_t unit, int64_t now_ns);
+
+/* Return the narrowest of all limits; the dynamics, of which later drivers add what earlier ones don't know; figures and
+   remarks of all; why of the first driver that has something to say, or "". [main] */
+ETHD_API ethd_limits ethd_device_limits(const ethd_device *device);
+ETHD_API ethd_dynamics ethd_device_dynamics(const ethd_device *device);
+ETHD_API uint32_t ethd_device_figures(const ethd_device *device, ethd_figure *out, uint32_t max);
+ETHD_API const char *ethd_device_remark(const ethd_device *device, uint32_t i);
+ETHD_API const char *ethd_device_why(const ethd_device *device);
 
 /* Reads a driver's settings, for its open: values[i] of its params and texts[i] of its keys, which stay as they are
    where the configuration says nothing. A key that the table doesn't have, or a value that it doesn't allow, is refused

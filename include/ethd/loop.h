@@ -26,7 +26,7 @@
 
    Create the loop before the device is started, and start it at once after that:
 
-     ethd_device_open -> ethd_control_create -> ethd_loop_create -> driver start -> ethd_loop_start
+     ethd_device_open -> ethd_control_create -> ethd_loop_create -> ethd_device_start -> ethd_loop_start
 
    ethd_loop_create does what takes long (in a large program locking the memory takes seconds); a drive that is enabled
    waits for its first message only some milliseconds until its watchdog, or the servo's guardian, takes the torque
@@ -92,27 +92,25 @@ ETHD_API const char *ethd_shortfall_mend(int32_t bit);
 
 /* Made by ethd_loop_default, then changed field by field. */
 typedef struct ethd_loop_def {
-  uint32_t cookie;           /* set by ethd_loop_default */
-  uint32_t bytes;            /* set by ethd_loop_default: the first size that isn't this library's, 0: none */
-  const ethd_driver *driver; /* of ethd_device_open; or one that has start, read, write and safe, and service if it
-                            has units */
-  void *device;              /* open; it is started between create and start */
-  ethd_control *control;     /* only the loop steps it while the loop exists */
-  double period;             /* s, the controller's (ethd_control_period), 1e-5 to 1; another one is refused */
-  int32_t cpu;               /* number of a processor, ETHD_CPU_NONE or ETHD_CPU_AUTO */
-  int32_t priority;          /* of SCHED_FIFO, 1 to 99; the device's I/O threads come ETHD_IO_BELOW under it */
-  int32_t require_rt;        /* 1: start fails at any shortfall */
-  int32_t dma_latency;       /* us, held while the loop exists; -1: not held */
-  double early_wake;         /* s, 0 to period / 2: the loop wakes this early, warms the caches and spins to the tick */
-  double gap;                /* s, at least a period: longer lateness, silence and older joint samples are faults;
+  uint32_t cookie;          /* set by ethd_loop_default */
+  uint32_t bytes;           /* set by ethd_loop_default: the first size that isn't this library's, 0: none */
+  ethd_device *device;      /* of ethd_device_open; it is started between create and start */
+  ethd_control *control;    /* only the loop steps it while the loop exists */
+  double period;            /* s, the controller's (ethd_control_period), 1e-5 to 1; another one is refused */
+  int32_t cpu;              /* number of a processor, ETHD_CPU_NONE or ETHD_CPU_AUTO */
+  int32_t priority;         /* of SCHED_FIFO, 1 to 99; the device's I/O threads come ETHD_IO_BELOW under it */
+  int32_t require_rt;       /* 1: start fails at any shortfall */
+  int32_t dma_latency;      /* us, held while the loop exists; -1: not held */
+  double early_wake;        /* s, 0 to period / 2: the loop wakes this early, warms the caches and spins to the tick */
+  double gap;               /* s, at least a period: longer lateness, silence and older joint samples are faults;
                             INFINITY: lateness is only counted. The device's own limit holds too */
-  double heartbeat;          /* s, at least a period: the longest time between two beats; INFINITY: none is needed */
-  double soft_start;         /* s, 0 to 10: time in which the torque's share rises from 0 to 1 after enabling */
-  size_t stack;              /* bytes of the loop's stack, 65536 to 2^26; thread-local memory comes on top */
-  uint32_t rows;             /* of the ring, a power of two up to 2^20; 0: no rows are kept */
-  int64_t *clock;            /* NULL: the system's. Else a virtual clock, ns: the loop sets it to each tick's
+  double heartbeat;         /* s, at least a period: the longest time between two beats; INFINITY: none is needed */
+  double soft_start;        /* s, 0 to 10: time in which the torque's share rises from 0 to 1 after enabling */
+  size_t stack;             /* bytes of the loop's stack, 65536 to 2^26; thread-local memory comes on top */
+  uint32_t rows;            /* of the ring, a power of two up to 2^20; 0: no rows are kept */
+  int64_t *clock;           /* NULL: the system's. Else a virtual clock, ns: the loop sets it to each tick's
                             instant, a driver may move it on */
-  const int64_t *suspended;  /* ns for which a virtual clock has stood still so far; NULL: it never stands still */
+  const int64_t *suspended; /* ns for which a virtual clock has stood still so far; NULL: it never stands still */
 } ethd_loop_def;
 
 typedef struct ethd_loop ethd_loop;

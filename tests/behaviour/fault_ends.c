@@ -68,7 +68,7 @@ static void old_point(int i, char *says, size_t room) {
   while (r.tick < begin) fault_rig_tick(&r);
   ethd_loop_disarm(r.loop);
   for (int k = 0; k < 5; k++) fault_rig_tick(&r);
-  if (r.driver->stop(r.device)) snprintf(says, room, "trial %d: stop", i);
+  if (ethd_device_stop(r.device)) snprintf(says, room, "trial %d: stop", i);
   fault_rig_mark(&r);
   r.old_point = (uint16_t)(1 + draw_bits((uint64_t)i + 100) % 1000);
   if (ethd_loop_enable(r.loop) >= 0) snprintf(says, room, "trial %d: enabled with the set-point %d", i, r.old_point);

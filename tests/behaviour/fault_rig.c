@@ -152,16 +152,15 @@ static void open_device(fault_rig *r) {
   if (r->kind == FAULT_BUS) def.settings = servo, def.setting_count = 2;
   if (r->kind == FAULT_RING) def.settings = ring, def.setting_count = 2;
   if (r->kind == FAULT_BUS) fault_drive_map(map);
-  if (ethd_device_open(ids[r->kind], from, &def, &r->driver, &r->device, message)) fault_rig_fail("%s", message);
+  if (ethd_device_open(ids[r->kind], from, &def, &r->device, message)) fault_rig_fail("%s", message);
   if (r->kind == FAULT_BUS) unlink(map);
-  for (int i = 0; r->driver->start(r->device); i++) /* a busy machine's drive may be late, once or twice */
+  for (int i = 0; ethd_device_start(r->device); i++) /* a busy machine's drive may be late, once or twice */
     if (i == 4) fault_rig_fail("start");
 }
 
 static void open_loop(fault_rig *r) {
   ethd_loop_def def = ethd_loop_default();
   ethd_error error;
-  def.driver = r->driver;
   def.device = r->device;
   def.control = r->control;
   def.clock = &r->clock;
@@ -206,8 +205,8 @@ void fault_rig_mark(fault_rig *r) {
 
 void fault_rig_close(fault_rig *r) {
   ethd_loop_destroy(r->loop);
-  (void)!r->driver->stop(r->device);
-  r->driver->close(r->device);
+  (void)!ethd_device_stop(r->device);
+  ethd_device_close(r->device);
   if (r->kind == FAULT_BUS) mock_stop(&r->server);
   if (r->kind == FAULT_RING) fault_board_unplug();
   ethd_control_destroy(r->control);

@@ -34,8 +34,7 @@ struct fault_rig {
   ethd_scene *scene;
   ethd_setup setup;
   ethd_control *control;
-  const ethd_driver *driver;
-  void *device;
+  ethd_device *device;
   ethd_loop *loop;
   int64_t clock;
   ethd_sense now; /* what the sensors have at this tick */

@@ -91,7 +91,7 @@ static void try(const fault_row *t, int trial, outcome *o) {
     wrong(o, trial, "another row is latched:", (double)r.row.trace.fault);
   if (r.most > r.setup.limits.torque + (t->device == FAULT_BUS ? 0.001 : ROUNDING))
     wrong(o, trial, "torque over the limit, Nm:", r.most);
-  if (t->row == ETHD_FAULT_INDEX && r.driver->start(r.device) >= 0) wrong(o, trial, "the next run isn't refused", 0);
+  if (t->row == ETHD_FAULT_INDEX && ethd_device_start(r.device) >= 0) wrong(o, trial, "the next run isn't refused", 0);
   o->good += !o->says[0];
   fault_rig_close(&r);
 }

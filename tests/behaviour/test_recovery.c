@@ -49,12 +49,12 @@ static int recover(fault_rig *r, const double home[2]) {
     carry(r, home, before);
     fault_rig_tick(r);
     if (i % 200) continue;
-    if (r->row.trace.fault == ETHD_FAULT_ENCODER_JUMP && i == 2000 && r->driver->home(r->device, r->now.q)) return -1;
+    if (r->row.trace.fault == ETHD_FAULT_ENCODER_JUMP && i == 2000 && ethd_device_home(r->device, r->now.q)) return -1;
     if (r->row.trace.fault || r->row.trace.guard) {
-      r->driver->clear(r->device);
+      ethd_device_clear(r->device);
       if (ethd_control_clean_time(r->control) >= r->setup.limits.clean_time) ethd_loop_acknowledge(r->loop);
     } else if (!ethd_loop_armed(r->loop)) {
-      r->driver->clear(r->device);
+      ethd_device_clear(r->device);
       for (int k = 0; k < 5; k++) fault_rig_tick(r);
       r->shove[0] = r->shove[1] = 0;
       if (ethd_loop_enable(r->loop) == ETHD_OK) return i;
@@ -93,7 +93,7 @@ static int try(const fault_row *t) {
   bool good = took >= 0 && !fault && ethd_loop_armed(r.loop);
   printf("%3d  %-64s %s, latched %2d, enabled again after %5d ms, %s", t->row, t->how, shown ? "shown" : "not shown",
          (int)met, took, good ? "good\n" : "BAD: ");
-  if (!good) printf("%s; %s\n", ethd_fault_sentence((ethd_fault)fault), r.driver->why(r.device));
+  if (!good) printf("%s; %s\n", ethd_fault_sentence((ethd_fault)fault), ethd_device_why(r.device));
   fault_rig_close(&r);
   return good && (shown || t->needs_motion);
 }

@@ -11,6 +11,7 @@
 #include "servo/device.h"
 #include "servo/mock.h"
 #include "text/text.h"
+#include "unit/device_of.h"
 #include "unit/rig.h"
 
 #define TICK 1000000
@@ -535,17 +536,15 @@ TEST_LOOP(test_no_sample_looks_younger, 0, 2) {
 
 static ethd_control *control;
 static ethd_loop *loop;
-static ethd_driver driven; /* the servo, whose I/O may stand still */
-static uint32_t no_units(const void *d) { return (void)d, 0; }
+static ethd_device driven; /* the servo, whose I/O may stand still */
 
 static void open_loop(void) {
   ethd_loop_def def = ethd_loop_default();
   ethd_error error;
   ethd_limits own = servo->limits(device);
   setup.limits = ethd_limits_narrower(&own, &setup.limits);
-  driven = *servo;
-  def.driver = &driven;
-  def.device = device;
+  device_of(&driven, servo, device);
+  def.device = &driven;
   def.clock = &now;
   def.gap = setup.limits.gap;
   ck_assert_int_eq(servo->start(device), ETHD_OK);
@@ -600,7 +599,7 @@ TEST_LOOP(test_divisors, 1, 21) {
   for (int i = 0; i < 200; i++) ethd_loop_tick(loop);
   ck_assert_int_eq(rows_seen(), ETHD_FAULT_BIT(ETHD_FAULT_REPLY_MISSING));
   ck_assert(ethd_loop_armed(loop));
-  driven.units = no_units; /* nothing comes any more, and no true time goes by */
+  driven.at[0].units = 0; /* nothing comes any more, and no true time goes by */
   int n = 0;
   for (; n < 100 && ethd_loop_armed(loop); n++) ethd_loop_tick(loop);
   int bound = 2 * divisor > 5 ? 2 * divisor : 5;

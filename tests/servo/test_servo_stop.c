@@ -12,6 +12,7 @@
 #include "ethd/loop.h"
 #include "servo/mock.h"
 #include "text/text.h"
+#include "unit/device_of.h"
 #include "unit/rig.h"
 
 #define LINK 0.25 /* m */
@@ -197,8 +198,9 @@ static bool stop(const trial *t, double *stop_time) {
   limit(&setup, device);
   *stop_time = setup.limits.stop_time;
   ck_assert_msg(ethd_control_create(&setup, &control, &error) == ETHD_OK, "%s", error.name);
-  def.driver = servo;
-  def.device = device;
+  static ethd_device of_servo;
+  device_of(&of_servo, servo, device);
+  def.device = &of_servo;
   def.control = control;
   def.period = setup.period;
   def.gap = setup.limits.gap;

@@ -270,12 +270,12 @@ TEST_LOOP(test_guardian, 0, 2) {
 
 static int is_prepare;
 
-static ethd_status open_one(const char *ids, const char *path, const ethd_driver **opened) {
+static ethd_status open_one(const char *ids, const char *path, ethd_device **opened) {
   ethd_setting one[] = {{"servo.map", path, 1}, {"servo.joint", "2", 2}};
   setup = ethd_setup_default();
   const ethd_device_def def = {&setup, one, 2, ".", "d.ini", 1};
-  return is_prepare ? ethd_device_prepare(ids, &def, opened, &device, message)
-                    : ethd_device_open(ids, NULL, &def, opened, &device, message);
+  return is_prepare ? ethd_device_prepare(ids, &def, opened, message)
+                    : ethd_device_open(ids, NULL, &def, opened, message);
 }
 
 TEST(test_joint_unmeasured) {
@@ -285,7 +285,7 @@ TEST(test_joint_unmeasured) {
                             "[register position1]\ndirection = read\naddress = 5\ntype = u16\nunit = count\n"
                             "counts = 4000\nabsolute = yes\n";
   char path[] = "/tmp/ethd-units-XXXXXX";
-  const ethd_driver *opened;
+  ethd_device *opened;
   close(mkstemp(path));
   ck_assert_int_eq(ethd_text_write(path, one, sizeof one - 1, message), ETHD_OK);
   is_prepare = 0; /* nothing answers at its port, which isn't asked */
@@ -297,6 +297,6 @@ TEST(test_joint_unmeasured) {
                    "registers may be of several units (bus_unit), or of one more driver");
   ck_assert_int_eq(open_one("servo, nail", path, &opened), ETHD_E_ARGUMENT); /* a finger's sensor is no help */
   ck_assert_msg(open_one("servo, counter", path, &opened) == ETHD_OK, "%s", message);
-  opened->close(device);
+  ethd_device_close(opened);
   remove(path);
 }

@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "ethd/loop.h"
+#include "unit/device_of.h"
 #include "unit/rig.h"
 
 enum { IN_STEP, IN_REHEARSAL, IN_READ, IN_WRITE, PLACES };
@@ -89,8 +90,9 @@ static void begin(rig *r, ethd_tracking_law *law, ethd_loop **loop, double gap) 
   rig_start(r);
   sense = rig_sense(&r->setup.arm, &m);
   ethd_loop_def def = ethd_loop_default();
-  def.driver = &driver;
-  def.device = &sense;
+  static ethd_device of_it;
+  device_of(&of_it, &driver, &sense);
+  def.device = &of_it;
   def.control = r->control;
   def.gap = gap;
   def.soft_start = 0;

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "ethd/loop.h"
+#include "unit/device_of.h"
 #include "unit/draw.h"
 #include "unit/rig.h"
 
@@ -139,8 +140,9 @@ static void begin(int place, int tick, double period, double gap) {
   d.place = place;
   d.tick = tick;
   ethd_loop_def def = ethd_loop_default();
-  def.driver = &driver;
-  def.device = &d;
+  static ethd_device of_it;
+  device_of(&of_it, &driver, &d);
+  def.device = &of_it;
   def.control = r.control;
   def.period = period;
   def.gap = gap;

@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #include "ethd/loop.h"
+#include "unit/device_of.h"
 #include "unit/rig.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -140,8 +141,9 @@ static void open_loop(double early_wake) {
   motion m = rig_at(0.001, -0.01, 0.001);
   d.sense = rig_sense(&r.setup.arm, &m);
   ethd_loop_def def = ethd_loop_default();
-  def.driver = &driver;
-  def.device = &d;
+  static ethd_device of_it;
+  device_of(&of_it, &driver, &d);
+  def.device = &of_it;
   def.control = r.control;
   def.early_wake = early_wake;
   if (SANITIZED) def.stack = (size_t)4 << 20; /* sanitizers keep their own things there */
@@ -295,8 +297,9 @@ START_TEST(test_require_rt) {
   rig_start(&r);
   ethd_loop_def def = ethd_loop_default();
   ethd_error error;
-  def.driver = &driver;
-  def.device = &d;
+  static ethd_device of_it;
+  device_of(&of_it, &driver, &d);
+  def.device = &of_it;
   def.control = r.control;
   def.require_rt = 1;
   def.cpu = 1023;

@@ -50,8 +50,8 @@ void bench_open(bench *b) {
   b->clock = 5 * (int64_t)PERIOD;
   b->d = (device){.clock = &b->clock, .fail_read = -1, .fail_write = -1, .sense = rig_sense(&b->r.setup.arm, &m)};
   b->def = ethd_loop_default();
-  b->def.driver = &driver;
-  b->def.device = &b->d;
+  device_of(&b->of_d, &driver, &b->d);
+  b->def.device = &b->of_d;
   b->def.control = b->r.control;
   b->def.clock = &b->clock;
   b->def.soft_start = 0;

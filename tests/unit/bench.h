@@ -3,6 +3,7 @@
 #define ETHD_TESTS_BENCH_H
 
 #include "ethd/loop.h"
+#include "unit/device_of.h"
 #include "unit/rig.h"
 
 #define PERIOD 1000000 /* ns */
@@ -21,6 +22,7 @@ typedef struct device {
 typedef struct bench {
   rig r;
   device d;
+  ethd_device of_d;
   int64_t clock;
   ethd_loop_def def;
   ethd_loop *loop;

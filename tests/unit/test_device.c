@@ -111,8 +111,7 @@ static const ethd_driver b = {.size = sizeof b,
                               .figures = figures};
 static const ethd_driver *const both[] = {&a, &b, NULL};
 
-static const ethd_driver *driver;
-static void *device;
+static ethd_device *device;
 static char message[ETHD_MESSAGE_MAX];
 
 static ethd_status try(const char *ids, const char *k0, const char *k1) {
@@ -120,14 +119,14 @@ static ethd_status try(const char *ids, const char *k0, const char *k1) {
   const ethd_setup setup = ethd_setup_default();
   const ethd_device_def def = {&setup, settings, (k0 != NULL) + (k1 != NULL), ".", "c.ini", 1};
   log_[0] = message[0] = 0;
-  return ethd_device_open(ids, both, &def, &driver, &device, message);
+  return ethd_device_open(ids, both, &def, &device, message);
 }
 
 TEST(test_alone) {
   ck_assert_int_eq(try("b", "b.port", "speed"), ETHD_OK);
   ck_assert_str_eq(keys[0], "port");
   ck_assert_str_eq(keys[1], "speed");
-  driver->close(device);
+  ethd_device_close(device);
 }
 
 TEST(test_two) {
@@ -135,21 +134,21 @@ TEST(test_two) {
   ethd_command c = {0};
   ethd_figure f[3];
   ck_assert_int_eq(try("a ,b", "b.port", "a.map"), ETHD_OK);
-  ck_assert_int_eq(driver->start(device), ETHD_OK);
-  ck_assert_int_eq(driver->read(device, 5, &s), ETHD_STATUS_STALE);
+  ck_assert_int_eq(ethd_device_start(device), ETHD_OK);
+  ck_assert_int_eq(ethd_device_read(device, 5, &s), ETHD_STATUS_STALE);
   ck_assert(s.q[0] == 1 && s.time_ns == 5 && s.have == ETHD_HAVE_RAYS && s.faults == ETHD_FAULT_BIT(18));
-  ck_assert_int_eq(driver->write(device, 5, &c), ETHD_OK);
-  ck_assert_uint_eq(driver->units(device), 3);
-  for (uint32_t u = 0; u < 3; u++) ck_assert_int_eq(driver->service(device, u, 5), ETHD_OK);
-  ck_assert_int_eq(driver->service(device, 3, 5), ETHD_E_ARGUMENT);
-  driver->safe(device);
-  ethd_limits l = driver->limits(device);
+  ck_assert_int_eq(ethd_device_write(device, 5, &c), ETHD_OK);
+  ck_assert_uint_eq(ethd_device_units(device), 3);
+  for (uint32_t u = 0; u < 3; u++) ck_assert_int_eq(ethd_device_service(device, u, 5), ETHD_OK);
+  ck_assert_int_eq(ethd_device_service(device, 3, 5), ETHD_E_ARGUMENT);
+  ethd_device_safe(device);
+  ethd_limits l = ethd_device_limits(device);
   ck_assert(l.torque == 1 && l.speed == 3);
-  ck_assert_uint_eq(driver->figures(device, f, 3), 2);
+  ck_assert_uint_eq(ethd_device_figures(device, f, 3), 2);
   ck_assert(f[0].value == 'a' && f[1].value == 'b');
-  ck_assert_uint_eq(driver->figures(device, f, 1), 1);
-  ck_assert_int_eq(driver->stop(device), ETHD_OK);
-  driver->close(device);
+  ck_assert_uint_eq(ethd_device_figures(device, f, 1), 1);
+  ck_assert_int_eq(ethd_device_stop(device), ETHD_OK);
+  ethd_device_close(device);
   ck_assert_str_eq(log_, "oaobsbsawa0a0b1bxaxbtatbcbca");
 }
 
@@ -157,9 +156,9 @@ TEST(test_two) {
 TEST(test_undone) {
   ck_assert_int_eq(try("a,b", NULL, NULL), ETHD_OK);
   fail_start = 1;
-  ck_assert_int_eq(driver->start(device), ETHD_E_DEVICE);
+  ck_assert_int_eq(ethd_device_start(device), ETHD_E_DEVICE);
   fail_start = 0;
-  driver->close(device);
+  ethd_device_close(device);
   ck_assert_str_eq(log_, "oaobsbsatbcbca");
   ck_assert_int_eq(try("a,b", "b.bad", NULL), ETHD_E_DEVICE);
   ck_assert_str_eq(log_, "oaobcbca");
@@ -176,7 +175,7 @@ static ethd_status open_bare(const char *ids) {
   const ethd_setup setup = ethd_setup_default();
   const ethd_device_def def = {&setup, NULL, 0, ".", NULL, 1};
   log_[0] = message[0] = 0;
-  return ethd_device_open(ids, only_bare, &def, &driver, &device, message);
+  return ethd_device_open(ids, only_bare, &def, &device, message);
 }
 
 TEST(test_bare) {
@@ -187,26 +186,26 @@ TEST(test_bare) {
   bare = (ethd_driver){
       .size = sizeof bare, .abi = ETHD_DRIVER_ABI, .id = "bare", .brief = "bare", .open = open_b, .close = close_part};
   ck_assert_int_eq(open_bare("bare"), ETHD_OK);
-  ck_assert_int_eq(driver->start(device), ETHD_OK);
-  ck_assert_int_eq(driver->read(device, 5, &s), ETHD_OK);
-  ck_assert_int_eq(driver->write(device, 5, &c), ETHD_OK);
-  ck_assert_uint_eq(driver->units(device), 0);
-  driver->safe(device);
-  ethd_limits l = driver->limits(device);
+  ck_assert_int_eq(ethd_device_start(device), ETHD_OK);
+  ck_assert_int_eq(ethd_device_read(device, 5, &s), ETHD_OK);
+  ck_assert_int_eq(ethd_device_write(device, 5, &c), ETHD_OK);
+  ck_assert_uint_eq(ethd_device_units(device), 0);
+  ethd_device_safe(device);
+  ethd_limits l = ethd_device_limits(device);
   ck_assert_mem_eq(&l, &none, sizeof l);
-  ck_assert_uint_eq(driver->figures(device, &f, 1), 0);
-  ck_assert(driver->remark(device, 0) == NULL);
-  ck_assert_int_eq(driver->stop(device), ETHD_OK);
-  driver->close(device);
+  ck_assert_uint_eq(ethd_device_figures(device, &f, 1), 0);
+  ck_assert(ethd_device_remark(device, 0) == NULL);
+  ck_assert_int_eq(ethd_device_stop(device), ETHD_OK);
+  ethd_device_close(device);
   ck_assert_str_eq(log_, "obcb");
   /* beside another; without a stop of its own it is made safe */
   bare.safe = safe;
   ck_assert_int_eq(open_bare("a, bare"), ETHD_OK);
-  ck_assert_int_eq(driver->start(device), ETHD_OK);
-  l = driver->limits(device);
+  ck_assert_int_eq(ethd_device_start(device), ETHD_OK);
+  l = ethd_device_limits(device);
   ck_assert(l.torque == 2 && l.speed == 3);
-  ck_assert_int_eq(driver->stop(device), ETHD_OK);
-  driver->close(device);
+  ck_assert_int_eq(ethd_device_stop(device), ETHD_OK);
+  ethd_device_close(device);
   ck_assert_str_eq(log_, "oaobsataxbcbca");
   /* what takes torque must let go */
   bare.safe = NULL;
@@ -221,20 +220,20 @@ TEST(test_forked) {
   bare = (ethd_driver){
       .size = sizeof bare, .abi = ETHD_DRIVER_ABI, .id = "bare", .brief = "bare", .open = open_b, .close = close_part};
   ck_assert_int_eq(open_bare("a, bare"), ETHD_OK);
-  ck_assert_int_eq(driver->start(device), ETHD_OK);
+  ck_assert_int_eq(ethd_device_start(device), ETHD_OK);
   const pid_t child = fork();
   if (child == 0) {
     char before[sizeof log_];
     memcpy(before, log_, sizeof log_);
-    const int refused = driver->start(device) == ETHD_E_DEVICE && driver->stop(device) == ETHD_E_DEVICE &&
-                        driver->home(device, NULL) == ETHD_E_DEVICE;
-    driver->close(device);
+    const int refused = ethd_device_start(device) == ETHD_E_DEVICE && ethd_device_stop(device) == ETHD_E_DEVICE &&
+                        ethd_device_home(device, NULL) == ETHD_E_DEVICE;
+    ethd_device_close(device);
     _exit(refused && strcmp(before, log_) == 0 ? 0 : 1);
   }
   ck_assert_int_eq(waitpid(child, &status, 0), child);
   ck_assert_int_eq(status, 0);
-  ck_assert_int_eq(driver->stop(device), ETHD_OK);
-  driver->close(device);
+  ck_assert_int_eq(ethd_device_stop(device), ETHD_OK);
+  ethd_device_close(device);
 }
 
 /* ---- settings by a driver's own table ---- */
@@ -271,12 +270,12 @@ TEST(test_short_table) {
   const ethd_device_def def = {&setup, NULL, 0, ".", "c.ini", 1};
   for (int k = 0; k < 2; k++) {
     ethd_figure f[4];
-    ck_assert_int_eq(ethd_device_open(k ? "a, b" : "a", from, &def, &driver, &device, message), ETHD_OK);
-    ck_assert_int_eq(driver->start(device), ETHD_OK);
-    ck_assert_uint_eq(driver->figures(device, f, 4), (unsigned)k); /* b's alone */
-    ck_assert(driver->remark(device, 0) == NULL);
-    ck_assert_int_eq(driver->stop(device), ETHD_OK);
-    driver->close(device);
+    ck_assert_int_eq(ethd_device_open(k ? "a, b" : "a", from, &def, &device, message), ETHD_OK);
+    ck_assert_int_eq(ethd_device_start(device), ETHD_OK);
+    ck_assert_uint_eq(ethd_device_figures(device, f, 4), (unsigned)k); /* b's alone */
+    ck_assert(ethd_device_remark(device, 0) == NULL);
+    ck_assert_int_eq(ethd_device_stop(device), ETHD_OK);
+    ethd_device_close(device);
   }
   munmap(at, 2 * page);
 }
@@ -312,11 +311,11 @@ TEST(test_refused) {
   for (size_t i = 0; i < sizeof twice / sizeof *twice; i++) {
     ck_assert_int_eq(try(twice[i][0], twice[i][1], twice[i][2]), ETHD_E_DUPLICATE);
     ck_assert_str_eq(message, "c.ini:8: device.port: occurs twice, first on line 7");
-    ck_assert(driver == NULL && device == NULL && !strchr(log_, 'b'));
+    ck_assert(device == NULL && !strchr(log_, 'b'));
   }
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     ck_assert_int_eq(try(bad[i].ids, bad[i].key, NULL), bad[i].status);
     ck_assert_msg(strstr(message, bad[i].says) != NULL, "%s", message);
-    ck_assert(driver == NULL && device == NULL);
+    ck_assert(device == NULL);
   }
 }

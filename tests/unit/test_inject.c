@@ -8,6 +8,7 @@
 #include "inject/inject.h"
 #include "mutate.h"
 #include "rig.h"
+#include "unit/device_of.h"
 #include "unit/suite.h"
 
 #define MS 1000000
@@ -94,8 +95,7 @@ static const ethd_driver *const only[] = {&driver, NULL};
 /* ---- with a script around it ---- */
 
 typedef struct spoilt {
-  const ethd_driver *driver;
-  void *device;
+  ethd_device *device;
   int64_t now;
   ethd_sense s;
   ethd_status status;
@@ -110,9 +110,8 @@ static spoilt open_script(const char *text) {
   const ethd_setting settings[] = {{"inject", name, 3}};
   const ethd_device_def def = {&setup, settings, 1, NULL, "c.ini", 1};
   spoilt x = {.now = 41 * (int64_t)MS};
-  ck_assert_msg(!ethd_device_open("plain", only, &def, &x.driver, &x.device, message), "%s", message);
-  ck_assert_ptr_eq(x.driver, &ethd__driver_inject);
-  ck_assert_int_eq(x.driver->start(x.device), ETHD_OK);
+  ck_assert_msg(!ethd_device_open("plain", only, &def, &x.device, message), "%s", message);
+  ck_assert_int_eq(ethd_device_start(x.device), ETHD_OK);
   unlink(name);
   return x;
 }
@@ -120,14 +119,14 @@ static spoilt open_script(const char *text) {
 /* One sample, a period later than the last; t is told in ms since the first. */
 static const ethd_sense *sample(spoilt *x) {
   memset(&x->s, 0, sizeof x->s);
-  x->status = x->driver->read(x->device, x->now, &x->s);
+  x->status = ethd_device_read(x->device, x->now, &x->s);
   x->now += MS;
   return &x->s;
 }
 
 static double at(double ms) { return 1e-3 * (41 + ms); }
 
-static void close_script(spoilt *x) { x->driver->close(x->device); }
+static void close_script(spoilt *x) { ethd_device_close(x->device); }
 
 TEST(test_values) {
   spoilt x = open_script("0.002 q1 freeze for=0.003\n"
@@ -148,7 +147,7 @@ TEST(test_values) {
     ck_assert_int_eq((s->have & ETHD_HAVE_RAYS) != 0, ms % 3 == 0);
   }
   ethd_figure f[2];
-  ck_assert_uint_eq(x.driver->figures(x.device, f, 2), 1);
+  ck_assert_uint_eq(ethd_device_figures(x.device, f, 2), 1);
   ck_assert_double_eq(f[0].value, 3 + 1 + 2 + 1 + 1 + 1 + 1);
   close_script(&x);
 }
@@ -174,7 +173,7 @@ TEST(test_channels) {
   const ethd_sense *s = sample(&x);
   ck_assert(s->dq[0] == 0 && s->finger[0] == 0 && s->centre[0] == 0);
   ethd_figure f;
-  ck_assert_uint_eq(x.driver->figures(x.device, &f, 1), 1);
+  ck_assert_uint_eq(ethd_device_figures(x.device, &f, 1), 1);
   ck_assert_double_eq(f.value, 0);
   close_script(&x);
 }
@@ -182,15 +181,15 @@ TEST(test_channels) {
 /* What isn't spoilt is the device's own: its limits, units, end and remarks, after one that says what this is. */
 TEST(test_passes_on) {
   spoilt x = open_script("1 q1 nan\n");
-  ck_assert_str_eq(x.driver->remark(x.device, 0), "faults are injected: this is no run to trust");
-  ck_assert_ptr_null(x.driver->remark(x.device, 1));
-  ck_assert_uint_eq(x.driver->units(x.device), 1);
-  ck_assert(isinf(x.driver->limits(x.device).torque));
-  ck_assert(isnan(x.driver->dynamics(x.device).mass[0]) || x.driver->dynamics(x.device).mass[0] == 0);
-  ck_assert_str_eq(x.driver->why(x.device), "");
-  x.driver->clear(x.device);
-  ck_assert_int_eq(x.driver->home(x.device, NULL), ETHD_E_ARGUMENT);
-  ck_assert_int_eq(x.driver->stop(x.device), ETHD_OK);
+  ck_assert_str_eq(ethd_device_remark(x.device, 0), "faults are injected: this is no run to trust");
+  ck_assert_ptr_null(ethd_device_remark(x.device, 1));
+  ck_assert_uint_eq(ethd_device_units(x.device), 1);
+  ck_assert(isinf(ethd_device_limits(x.device).torque));
+  ck_assert(isnan(ethd_device_dynamics(x.device).mass[0]) || ethd_device_dynamics(x.device).mass[0] == 0);
+  ck_assert_str_eq(ethd_device_why(x.device), "");
+  ethd_device_clear(x.device);
+  ck_assert_int_eq(ethd_device_home(x.device, NULL), ETHD_E_ARGUMENT);
+  ck_assert_int_eq(ethd_device_stop(x.device), ETHD_OK);
   close_script(&x);
 }
 
@@ -254,20 +253,20 @@ TEST(test_calls) {
                          "0.002 service fail\n0.003 service drop\n");
   for (int ms = 0; ms < 8; ms++) {
     int64_t now = x.now;
-    ck_assert_int_eq(x.driver->service(x.device, 0, now), ms == 2   ? ETHD_E_DEVICE
-                                                          : ms == 3 ? ETHD_STATUS_EMPTY
-                                                                    : ETHD_OK);
+    ck_assert_int_eq(ethd_device_service(x.device, 0, now), ms == 2   ? ETHD_E_DEVICE
+                                                            : ms == 3 ? ETHD_STATUS_EMPTY
+                                                                      : ETHD_OK);
     sample(&x);
     ck_assert_int_eq(x.status, ms == 2 ? ETHD_E_DEVICE : ms == 4 || ms == 5 ? ETHD_STATUS_STALE : ETHD_OK);
     if (x.status) ck_assert_double_eq(x.s.q[0], 0);
     ethd_command c = {{ms, -ms}, 0, 0};
-    ethd_status status = x.driver->write(x.device, now, &c);
+    ethd_status status = ethd_device_write(x.device, now, &c);
     ck_assert_int_eq(status, ms == 1 ? ETHD_E_DEVICE : ETHD_OK);
     double expected = ms == 1 || ms == 2 ? 0 : ms == 3 ? 1.5 : ms == 5 || ms == 6 ? ms - 2 : ms;
     ck_assert_double_eq(p.last.torque[0], expected);
   }
   ck_assert(p.reads == 5 && p.writes == 6 && p.services == 6);
-  x.driver->safe(x.device);
+  ethd_device_safe(x.device);
   ck_assert_int_eq(p.safes, 1);
   close_script(&x);
 }
@@ -279,7 +278,7 @@ TEST(test_rows_and_start) {
   ck_assert_int_eq(sample(&x)->faults, ETHD_FAULT_BIT(9) | ETHD_FAULT_BIT(11));
   ck_assert_int_eq(x.s.grave, ETHD_FAULT_BIT(11));
   ck_assert_int_eq(sample(&x)->faults, 0);
-  ck_assert_int_eq(x.driver->start(x.device), ETHD_OK); /* from the first sample again */
+  ck_assert_int_eq(ethd_device_start(x.device), ETHD_OK); /* from the first sample again */
   ck_assert_int_eq(sample(&x)->faults, 0);
   ck_assert_int_eq(sample(&x)->faults, ETHD_FAULT_BIT(9));
   close_script(&x);
@@ -287,10 +286,11 @@ TEST(test_rows_and_start) {
   char message[ETHD_MESSAGE_MAX];
   const char *text = "0 start fail";
   ck_assert_int_eq(ethd__script_parse(text, strlen(text), "s", 0.001, &script, message), ETHD_OK);
-  void *device;
-  ck_assert_int_eq(ethd__inject_around(&driver, &p, &script, &device), ETHD_OK);
-  ck_assert_int_eq(ethd__driver_inject.start(device), ETHD_E_DEVICE);
-  ethd__driver_inject.close(device);
+  ethd_device device;
+  device_of(&device, &driver, &p);
+  device.inject = ethd__inject_create(&script);
+  ck_assert_int_eq(ethd_device_start(&device), ETHD_E_DEVICE);
+  ethd__inject_free(device.inject);
 }
 
 /* What has come into the sense before, by a sample that was held, isn't spoilt twice. */
@@ -302,7 +302,7 @@ TEST(test_adds_once) {
   double ray = x.s.rays[2];
   ck_assert_double_eq_tol(ray, 3 + at(0), 1e-12);
   p.says = ETHD_OK;
-  x.status = x.driver->read(x.device, x.now, &x.s);
+  x.status = ethd_device_read(x.device, x.now, &x.s);
   ck_assert_double_eq(x.s.rays[2], ray);
   ck_assert_double_eq_tol(x.s.q[0], 1 + at(1), 1e-12);
   close_script(&x);
@@ -351,12 +351,11 @@ TEST(test_no_file) {
   ethd_setup setup = ethd_setup_default();
   const ethd_setting settings[] = {{"inject", "missing.inject", 3}};
   const ethd_device_def def = {&setup, settings, 1, "/nowhere", "c.ini", 1};
-  const ethd_driver *d;
-  void *device;
+  ethd_device *device;
   char message[ETHD_MESSAGE_MAX] = "";
-  ck_assert_int_eq(ethd_device_open("plain", only, &def, &d, &device, message), ETHD_E_FILE);
+  ck_assert_int_eq(ethd_device_open("plain", only, &def, &device, message), ETHD_E_FILE);
   ck_assert_msg(strstr(message, "/nowhere/missing.inject"), "%s", message);
-  ck_assert(!d && !device);
+  ck_assert_ptr_null(device);
 }
 
 TEST(test_mutations) {

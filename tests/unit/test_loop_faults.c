@@ -79,9 +79,9 @@ static ethd_limits strict(const void *d) {
 TEST(test_limit_of_the_device) {
   bench b;
   bench_open(&b);
-  ethd_driver own = *b.def.driver;
+  ethd_driver own = *b.of_d.at[0].driver;
   own.limits = strict;
-  b.def.driver = &own;
+  device_of(&b.of_d, &own, &b.d);
   b.d.stall_write[3] = 7 * PERIOD;
   bench_start(&b);
   for (int i = 0; i < 4; i++) rows_of_tick(&b);
@@ -183,9 +183,9 @@ static ethd_status gappy_read(void *device_, int64_t now, ethd_sense *out) {
 
 static void open_gap(bench *b, ethd_driver *own, int64_t faults) {
   bench_open(b);
-  *own = *b->def.driver;
+  *own = *b->of_d.at[0].driver;
   own->read = gappy_read;
-  b->def.driver = own;
+  device_of(&b->of_d, own, &b->d);
   gap.from = 4, gap.until = 7, gap.faults = faults;
   bench_start(b);
 }
@@ -257,9 +257,9 @@ TEST_LOOP(test_old_samples, 0, NOTHING_NEW * sizeof olds / sizeof *olds) {
   ethd_driver own;
   ethd_loop_row row = {.armed = 0}, last;
   bench_open(&b);
-  own = *b.def.driver;
+  own = *b.of_d.at[0].driver;
   own.read = gappy_read;
-  b.def.driver = &own;
+  device_of(&b.of_d, &own, &b.d);
   if (olds[way].gap > 0) b.def.gap = olds[way].gap * 1e-9 * PERIOD;
   gap.status = nothing_new[_i % NOTHING_NEW];
   gap.from = 4, gap.until = 90, gap.faults = 0;

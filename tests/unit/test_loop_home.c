@@ -21,9 +21,9 @@ static void open_with_home(bench *b) {
   answer = ETHD_OK;
   homings = 0;
   bench_open(b);
-  driver = *b->def.driver;
+  driver = *b->of_d.at[0].driver;
   driver.home = home;
-  b->def.driver = &driver;
+  device_of(&b->of_d, &driver, &b->d);
   bench_start(b);
 }
 

@@ -106,12 +106,11 @@ static ethd_status open_sim(const char *key, const char *value, ethd_limits *lim
   const ethd_setting settings[] = {{"finger", key ? "zones" : value, 3}, {key, value, 4}};
   const ethd_setup setup = ethd_setup_default();
   const ethd_device_def def = {&setup, settings, key ? 2 : 1, "apps/config", "c.ini", 1};
-  const ethd_driver *driver;
-  void *device;
-  ethd_status status = ethd_device_open("sim", NULL, &def, &driver, &device, message);
+  ethd_device *device;
+  ethd_status status = ethd_device_open("sim", NULL, &def, &device, message);
   if (status) return status;
-  *limits = driver->limits(device);
-  driver->close(device);
+  *limits = ethd_device_limits(device);
+  ethd_device_close(device);
   return ETHD_OK;
 }
 

@@ -5,7 +5,7 @@
 
 #include "conform/conform_rig.h"
 #include "conform/letting_go.h"
-#include "device/stack.h"
+#include "device/device.h"
 #include "text/text.h"
 
 #define OPENINGS 20
@@ -21,10 +21,9 @@ static ethd_verdict ask_table(const ethd_conform_def *def, ethd_conform_answer *
   ethd__conform_rig r;
   if (!ethd__conform_rig_open(def, &r))
     return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "open: %.140s", r.message);
-  const ethd__stack *s = r.driver == &ethd__driver_stack ? r.device : NULL;
   ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT, "%s: %s", def->ids,
-                           s && s->count == 1 ? s->at[0].driver->brief : r.driver->brief);
-  r.driver->close(r.device);
+                           r.device->count == 1 ? r.device->at[0].driver->brief : "several drivers behind one device");
+  ethd_device_close(r.device);
   return a->verdict;
 }
 
@@ -58,7 +57,7 @@ static ethd_verdict ask_limits(const ethd_conform_def *def, ethd_conform_answer 
   ethd_error error;
   if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
   ethd__conform_rig_run(&r, 0.02, 0, 0);
-  ethd_limits l = r.driver->limits(r.device);
+  ethd_limits l = ethd_device_limits(r.device);
   ethd_pose pose;
   ethd_arm_pose(&def->device->setup->arm, r.sense.q, &pose);
   const double *w = l.workspace;

@@ -45,13 +45,13 @@ static void *run_unit(void *unit_) {
   ethd__conform_rig *r = unit->rig;
   const struct timespec pause = {.tv_nsec = IDLE};
   while (!atomic_load(&r->stop))
-    if (r->driver->service(r->device, unit->number, ethd__clock_now())) nanosleep(&pause, NULL);
+    if (ethd_device_service(r->device, unit->number, ethd__clock_now())) nanosleep(&pause, NULL);
   return NULL;
 }
 
 static void start_units(ethd__conform_rig *r) {
   atomic_store(&r->stop, 0);
-  for (uint32_t u = 0, n = r->driver->units(r->device); u < n && !r->def->device->is_virtual; u++) {
+  for (uint32_t u = 0, n = ethd_device_units(r->device); u < n && !r->def->device->is_virtual; u++) {
     r->unit[u] = (ethd__conform_rig_unit){.rig = r, .number = u};
     if (pthread_create(&r->unit[u].thread, NULL, run_unit, &r->unit[u])) return;
     r->units++;
@@ -72,7 +72,7 @@ bool ethd__conform_rig_open(const ethd_conform_def *def, ethd__conform_rig *r) {
   r->now = def->device->is_virtual ? 0 : ethd__clock_now();
   r->resolution = (double)INFINITY;
   r->finite = 1;
-  return ethd_device_open(def->ids, def->from, def->device, &r->driver, &r->device, r->message) == ETHD_OK;
+  return ethd_device_open(def->ids, def->from, def->device, &r->device, r->message) == ETHD_OK;
 }
 
 bool ethd__conform_rig_begin(const ethd_conform_def *def, ethd__conform_rig *r, ethd_conform_answer *a) {
@@ -80,7 +80,7 @@ bool ethd__conform_rig_begin(const ethd_conform_def *def, ethd__conform_rig *r, 
     return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "open: %.140s", r->message), 0;
   ethd_status status = ethd__conform_rig_start(r);
   if (status >= 0) return 1;
-  r->driver->close(r->device);
+  ethd_device_close(r->device);
   return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "start: %s", ethd_status_sentence(status)), 0;
 }
 
@@ -89,18 +89,18 @@ static void serve(ethd__conform_rig *r, double seconds) {
   const struct timespec pause = {.tv_nsec = IDLE};
   for (int64_t left = (int64_t)(1e9 * seconds); left > 0; left -= r->period) {
     int64_t now = r->def->device->is_virtual ? (r->now += r->period) : ethd__clock_now();
-    for (uint32_t u = 0, n = r->driver->units(r->device); u < n; u++) (void)!r->driver->service(r->device, u, now);
+    for (uint32_t u = 0, n = ethd_device_units(r->device); u < n; u++) (void)!ethd_device_service(r->device, u, now);
     if (!r->def->device->is_virtual) nanosleep(&pause, NULL);
   }
 }
 
 ethd_status ethd__conform_rig_start(ethd__conform_rig *r) {
   if (ethd__conform_stopped(r->def)) return ETHD_E_UNFINISHED; /* nothing is enabled any more */
-  ethd_status status = r->driver->start(r->device);
+  ethd_status status = ethd_device_start(r->device);
   if (status < 0) {
-    r->driver->clear(r->device);
+    ethd_device_clear(r->device);
     serve(r, CLEARING);
-    status = r->driver->start(r->device);
+    status = ethd_device_start(r->device);
   }
   if (status < 0) return status;
   start_units(r);
@@ -110,12 +110,12 @@ ethd_status ethd__conform_rig_start(ethd__conform_rig *r) {
 
 void ethd__conform_rig_stop(ethd__conform_rig *r) {
   stop_units(r);
-  (void)!r->driver->stop(r->device);
+  (void)!ethd_device_stop(r->device);
 }
 
 void ethd__conform_rig_end(ethd__conform_rig *r) {
   ethd__conform_rig_stop(r);
-  r->driver->close(r->device);
+  ethd_device_close(r->device);
 }
 
 void ethd__conform_rig_hush(ethd__conform_rig *r, double seconds) {
@@ -160,14 +160,14 @@ static void tick(ethd__conform_rig *r, const double *torque) {
   ethd_sense s = {0};
   ethd_command command = {.safe = torque == NULL};
   if (ethd__conform_stopped(r->def)) {
-    r->driver->safe(r->device);
+    ethd_device_safe(r->device);
     return;
   }
   if (torque) memcpy(command.torque, torque, sizeof command.torque);
   await_tick(r);
-  for (uint32_t u = 0, n = r->driver->units(r->device); u < n && r->def->device->is_virtual; u++)
-    (void)!r->driver->service(r->device, u, r->now);
-  ethd_status status = r->driver->read(r->device, r->now, &s);
+  for (uint32_t u = 0, n = ethd_device_units(r->device); u < n && r->def->device->is_virtual; u++)
+    (void)!ethd_device_service(r->device, u, r->now);
+  ethd_status status = ethd_device_read(r->device, r->now, &s);
   r->failed += status < 0;
   r->faults |= s.faults;
   r->grave |= s.grave;
@@ -177,7 +177,7 @@ static void tick(ethd__conform_rig *r, const double *torque) {
     r->sense = s;
   }
   if (r->samples) r->age = fmax(r->age, 1e-9 * (double)(r->now - r->sense.time_ns));
-  if (torque) r->failed += r->driver->write(r->device, r->now, &command) < 0;
+  if (torque) r->failed += ethd_device_write(r->device, r->now, &command) < 0;
 }
 
 void ethd__conform_rig_run(ethd__conform_rig *r, double seconds, int joint, double torque) {

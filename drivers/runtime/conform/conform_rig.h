@@ -19,8 +19,7 @@ typedef struct ethd__conform_rig_unit {
 
 struct ethd__conform_rig {
   const ethd_conform_def *def;
-  const ethd_driver *driver;
-  void *device;
+  ethd_device *device;
   int64_t now, period; /* ns */
   atomic_int stop;     /* the I/O threads, of which there are `units` */
   uint32_t units;

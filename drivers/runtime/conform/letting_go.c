@@ -93,19 +93,19 @@ ethd_verdict ethd__conform_safe(const ethd_conform_def *def, ethd_conform_answer
   ethd__conform_rig r;
   if (!ethd__conform_rig_open(def, &r))
     return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "open: %.140s", r.message);
-  r.driver->safe(r.device); /* before it was started */
-  r.driver->close(r.device);
+  ethd_device_safe(r.device); /* before it was started */
+  ethd_device_close(r.device);
   double most = LEFT * held(def, a);
   if (!(most > 0) || !ethd__conform_rig_begin(def, &r, a)) return a->verdict;
   ethd__conform_rig_settle(&r);
   double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, window(&r));
-  r.driver->safe(r.device);
-  r.driver->safe(r.device);
+  ethd_device_safe(r.device);
+  ethd_device_safe(r.device);
   ethd__conform_rig_run(&r, 0.01, 0, def->torque);
   double left = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, window(&r));
   ethd__conform_rig_stop(&r);
-  r.driver->safe(r.device); /* and once stopped */
-  r.driver->close(r.device);
+  ethd_device_safe(r.device); /* and once stopped */
+  ethd_device_close(r.device);
   if (!is_pushed(&r, pushed, a)) return a->verdict;
   return ethd__conform_rig_answer(a, left <= most ? ETHD_VERDICT_KEPT : ETHD_VERDICT_BROKEN,
                                   "%.3g rad/s^2 under torque, %.3g with the same torque once safe", pushed, left);

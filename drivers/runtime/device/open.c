@@ -4,10 +4,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "device/device.h"
 #include "device/driver_file.h"
 #include "device/settings.h"
-#include "device/stack.h"
-#include "inject/inject.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
@@ -24,7 +23,7 @@ static bool is_common(const char *key) { return !strcmp(key, INJECT) || !strcmp(
 
 /* The device that is being opened. */
 typedef struct naming {
-  ethd__stack *stack;
+  ethd_device *device;
   const ethd_driver *const *from;
   const ethd_device_def *def;
   char *message;
@@ -46,7 +45,7 @@ static const ethd_driver *find(const ethd_driver *const *from, const char *name,
 /* Loads the driver of a name like "file:mine.so", of `length` bytes, into row i. */
 static ethd_status load_driver(const naming *n, uint32_t i, const char *name, size_t length) {
   char what[ETHD_MESSAGE_MAX], quote[ETHD_QUOTE_MAX];
-  ethd__stack *s = n->stack;
+  ethd_device *s = n->device;
   char *given = strndup(name + strlen(ETHD_DRIVER_FILE), length - strlen(ETHD_DRIVER_FILE));
   char *path = given ? ethd__path_join(n->def->folder, given) : NULL;
   ethd_status status = path ? ethd__driver_load(path, &s->at[i].own, what) : ethd__no_memory(what, NULL);
@@ -69,7 +68,7 @@ static ethd_status check_driver(const naming *n, const ethd_driver *driver) {
 
 /* Puts the driver of a name, of `length` bytes, into the stack's next row. */
 static ethd_status add_driver(const naming *n, const char *name, size_t length) {
-  ethd__stack *s = n->stack;
+  ethd_device *s = n->device;
   size_t mark = strlen(ETHD_DRIVER_FILE);
   bool is_file = length > mark && !strncmp(name, ETHD_DRIVER_FILE, mark);
   const ethd_driver *known = is_file ? NULL : find(n->from, name, length);
@@ -113,7 +112,7 @@ static const char *own_key(const char *key, const char *id) {
 }
 
 /* Every key has an owner, so that each driver is given all of its own and nothing is left over. */
-static ethd_status check_owners(const ethd__stack *s, const ethd_device_def *def, char *message) {
+static ethd_status check_owners(const ethd_device *s, const ethd_device_def *def, char *message) {
   for (uint32_t k = 0; s->count > 1 && k < def->setting_count; k++) {
     bool owned = is_common(def->settings[k].key);
     for (uint32_t i = 0; i < s->count; i++) owned |= own_key(def->settings[k].key, s->at[i].driver->id) != NULL;
@@ -127,7 +126,7 @@ static ethd_status check_owners(const ethd__stack *s, const ethd_device_def *def
 }
 
 /* Returns the key as driver i is given it, NULL if it isn't its own. */
-static const char *given_key(const ethd__stack *s, uint32_t i, const char *key) {
+static const char *given_key(const ethd_device *s, uint32_t i, const char *key) {
   const char *own = own_key(key, s->at[i].driver->id);
   if (own) return own;
   return s->count > 1 || is_common(key) ? NULL : key;
@@ -139,7 +138,7 @@ static const ethd_setting *find_common(const ethd_device_def *def, const char *k
   return NULL;
 }
 
-static uint32_t own_settings(const ethd__stack *s, uint32_t i, const ethd_device_def *def, ethd_setting *out) {
+static uint32_t own_settings(const ethd_device *s, uint32_t i, const ethd_device_def *def, ethd_setting *out) {
   uint32_t n = 0;
   for (uint32_t k = 0; k < def->setting_count; k++) {
     const char *key = given_key(s, i, def->settings[k].key);
@@ -164,14 +163,14 @@ static ethd_status check_twice(const ethd_device_def *own, char *message) {
 /* ---- opening ---- */
 
 /* Checks what an open driver says about itself. */
-static ethd_status check_open(ethd__stack *s, uint32_t i, char *message) {
+static ethd_status check_open(ethd_device *s, uint32_t i, char *message) {
   const ethd_driver *driver = s->at[i].driver;
   ethd_error error;
-  s->at[i].units = driver->units ? driver->units(s->at[i].device) : 0;
-  if (s->at[i].units > ETHD_UNITS_MAX || ethd__driver_stack.units(s) > ETHD_UNITS_MAX)
+  s->at[i].units = driver->units ? driver->units(s->at[i].state) : 0;
+  if (s->at[i].units > ETHD_UNITS_MAX || ethd_device_units(s) > ETHD_UNITS_MAX)
     return ethd__say(message, ETHD_E_FULL, "device: the drivers ask for more than %d I/O threads", ETHD_UNITS_MAX);
   if (!driver->limits) return ETHD_OK;
-  ethd_limits limits = driver->limits(s->at[i].device);
+  ethd_limits limits = driver->limits(s->at[i].state);
   ethd_status status = ethd_limits_check(&limits, &error);
   return status ? ethd__say(message, status, "device %s: limits: %s: %s", driver->id, error.name,
                             ethd_status_sentence(status))
@@ -186,20 +185,20 @@ static void one_line(char message[ETHD_MESSAGE_MAX]) {
 }
 
 /* Opens driver i with its own settings. */
-static ethd_status open_with(ethd__stack *s, uint32_t i, const ethd_device_def *own, char *message) {
+static ethd_status open_with(ethd_device *s, uint32_t i, const ethd_device_def *own, char *message) {
   const ethd_driver *driver = s->at[i].driver;
   message[0] = 0;
-  ethd__stack_foreign(s, i, s->only_prepares ? "prepare" : "open");
-  ethd_status status = driver->open(own, &s->at[i].device, message);
+  ethd__device_foreign(s, i, s->only_prepares ? "prepare" : "open");
+  ethd_status status = driver->open(own, &s->at[i].state, message);
   one_line(message);
   if (status && !message[0])
     ethd__say(message, status, "device %s: open: %s", driver->id, ethd_status_sentence(status));
   if (!status) status = check_open(s, i, message);
-  ethd__stack_foreign(s, i, NULL);
+  ethd__device_foreign(s, i, NULL);
   return status;
 }
 
-static ethd_status open_one(ethd__stack *s, uint32_t i, const ethd_device_def *def, char *message) {
+static ethd_status open_one(ethd_device *s, uint32_t i, const ethd_device_def *def, char *message) {
   ethd_setting *settings = calloc(def->setting_count + 1, sizeof *settings);
   if (!settings) return ethd__no_memory(message, NULL);
   ethd_device_def own = *def;
@@ -211,7 +210,7 @@ static ethd_status open_one(ethd__stack *s, uint32_t i, const ethd_device_def *d
   return status;
 }
 
-static ethd_status read_hang_time(ethd__stack *s, const ethd_device_def *def, char *message) {
+static ethd_status read_hang_time(ethd_device *s, const ethd_device_def *def, char *message) {
   static const ethd_param row = {HANG_TIME, "s", 1, 3600, HANG_TIME_DEFAULT, "for a driver that doesn't return"};
   double value = row.def;
   const ethd_setting *own = find_common(def, HANG_TIME);
@@ -223,13 +222,13 @@ static ethd_status read_hang_time(ethd__stack *s, const ethd_device_def *def, ch
 
 /* Asks driver i, prepared and not opened, which joints it will measure. */
 static ethd_status add_joints(const naming *n, uint32_t i, uint32_t *measured) {
-  ethd__stack *s = n->stack;
+  ethd_device *s = n->device;
   const ethd_driver own = s->at[i].own;
   s->at[i].own = ethd__driver_prepared(&own);
   ethd_status status = open_one(s, i, n->def, n->message);
-  if (!status) *measured |= own.joints(s->at[i].device);
-  if (s->at[i].device) own.close(s->at[i].device);
-  s->at[i].device = NULL;
+  if (!status) *measured |= own.joints(s->at[i].state);
+  if (s->at[i].state) own.close(s->at[i].state);
+  s->at[i].state = NULL;
   s->at[i].own = own;
   return status;
 }
@@ -238,9 +237,9 @@ static ethd_status add_joints(const naming *n, uint32_t i, uint32_t *measured) {
 static ethd_status check_joints(const naming *n, const char *ids) {
   char quote[ETHD_QUOTE_MAX];
   uint32_t measured = 0;
-  for (uint32_t i = 0; i < n->stack->count; i++)
-    if (!n->stack->at[i].own.joints || !n->stack->at[i].own.prepare) return ETHD_OK;
-  for (uint32_t i = 0; i < n->stack->count; i++) {
+  for (uint32_t i = 0; i < n->device->count; i++)
+    if (!n->device->at[i].own.joints || !n->device->at[i].own.prepare) return ETHD_OK;
+  for (uint32_t i = 0; i < n->device->count; i++) {
     ethd_status status = add_joints(n, i, &measured);
     if (status) return status;
   }
@@ -252,8 +251,7 @@ static ethd_status check_joints(const naming *n, const char *ids) {
 }
 
 static ethd_status open_all(const naming *n, const char *ids) {
-  ethd__stack *s = n->stack;
-  s->process = getpid();
+  ethd_device *s = n->device;
   ethd_status status = name_drivers(n, ids);
   if (!status) status = check_owners(s, n->def, n->message);
   if (!status) status = read_hang_time(s, n->def, n->message);
@@ -265,58 +263,43 @@ static ethd_status open_all(const naming *n, const char *ids) {
 /* ---- faults to inject ---- */
 
 /* Loads the script, which happens before anything is opened. */
-static ethd_status load_script(const naming *n, const char *file, ethd__script *out) {
+static ethd_status load_script(const naming *n, const char *file) {
+  ethd__script script = {.count = 0};
   char *path = ethd__path_join(n->def->folder, file);
-  ethd_status status =
-      path ? ethd__script_load(path, n->def->setup->period, out, n->message) : ethd__no_memory(n->message, NULL);
+  if (!path) return ethd__no_memory(n->message, NULL);
+  ethd_status status = ethd__script_load(path, n->def->setup->period, &script, n->message);
   free(path);
-  return status;
+  if (status) return status;
+  n->device->inject = ethd__inject_create(&script);
+  if (n->device->inject) return ETHD_OK;
+  ethd__script_free(&script);
+  return ethd__no_memory(n->message, NULL);
 }
 
-typedef struct opened {
-  const ethd_driver *driver;
-  void *device;
-} opened;
-
-/* Opens the drivers, and wraps them in the one that injects faults if there is a script. */
-static ethd_status open_stack(const naming *n, const char *ids, opened *out) {
-  ethd__script script = {.count = 0};
-  *out = (opened){.driver = NULL};
-  if (!n->stack) return ethd__no_memory(n->message, NULL);
-  const ethd_setting *wrong = find_common(n->def, INJECT);
-  ethd_status status = wrong ? load_script(n, wrong->value, &script) : ETHD_OK;
+/* Opens the drivers, with a script of faults if there is one. */
+static ethd_status open_device(const naming *n, const char *ids, ethd_device **out) {
+  *out = NULL;
+  if (!n->device) return ethd__no_memory(n->message, NULL);
+  n->device->process = getpid();
+  const ethd_setting *script = find_common(n->def, INJECT);
+  ethd_status status = script ? load_script(n, script->value) : ETHD_OK;
   if (!status) status = open_all(n, ids);
-  if (status) {
-    ethd__script_free(&script);
-    ethd__driver_stack.close(n->stack);
-    return status;
-  }
-  *out = (opened){&ethd__driver_stack, n->stack};
-  if (!wrong) return ETHD_OK;
-  status = ethd__inject_around(out->driver, n->stack, &script, &out->device);
-  out->driver = &ethd__driver_inject;
-  if (!status) return ETHD_OK;
-  *out = (opened){.driver = NULL};
-  return ethd__say(n->message, status, "%s", ethd_status_sentence(status));
+  if (status)
+    ethd_device_close(n->device);
+  else
+    *out = n->device;
+  return status;
 }
 
 ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from, const ethd_device_def *def,
-                             const ethd_driver **driver, void **device, char message[ETHD_MESSAGE_MAX]) {
-  opened out;
-  const naming n = {calloc(1, sizeof(ethd__stack)), from ? from : ethd_drivers, def, message};
-  ethd_status status = open_stack(&n, ids, &out);
-  *driver = out.driver;
-  *device = out.device;
-  return status;
+                             ethd_device **out, char message[ETHD_MESSAGE_MAX]) {
+  const naming n = {calloc(1, sizeof(ethd_device)), from ? from : ethd_drivers, def, message};
+  return open_device(&n, ids, out);
 }
 
-ethd_status ethd_device_prepare(const char *ids, const ethd_device_def *def, const ethd_driver **driver, void **device,
+ethd_status ethd_device_prepare(const char *ids, const ethd_device_def *def, ethd_device **out,
                                 char message[ETHD_MESSAGE_MAX]) {
-  opened out;
-  const naming n = {calloc(1, sizeof(ethd__stack)), ethd_drivers, def, message};
-  if (n.stack) n.stack->only_prepares = true;
-  ethd_status status = open_stack(&n, ids, &out);
-  *driver = out.driver;
-  *device = out.device;
-  return status;
+  const naming n = {calloc(1, sizeof(ethd_device)), ethd_drivers, def, message};
+  if (n.device) n.device->only_prepares = true;
+  return open_device(&n, ids, out);
 }

@@ -56,13 +56,8 @@ static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
   if (skewed < SIZED)
     return ethd__loop_refuse(error, ETHD_E_SIZE, sized[skewed].name, d->bytes, sized[skewed].size, sized[skewed].size);
   if (d->cookie != COOKIE) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "ethd_loop_def", NAN, NAN, NAN);
-  if (!d->driver) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "driver", NAN, NAN, NAN);
+  if (!d->device) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "device", NAN, NAN, NAN);
   if (!d->control) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "control", NAN, NAN, NAN);
-  if (d->driver->abi != ETHD_DRIVER_ABI || d->driver->size < sizeof *d->driver)
-    return ethd__loop_refuse(error, ETHD_E_ABI, "driver", NAN, NAN, NAN);
-  bool lacks_service = d->driver->units && !d->driver->service;
-  if (!d->driver->start || !d->driver->read || !d->driver->write || !d->driver->safe || lacks_service)
-    return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "driver", NAN, NAN, NAN);
   if (d->rows & (d->rows - 1)) return ethd__loop_refuse(error, ETHD_E_RANGE, "rows", d->rows, 0, 0x1p20);
   ethd_status status = within(error, "period", d->period, 1e-5, 1);
   if (!status) status = within(error, "cpu", d->cpu, ETHD_CPU_AUTO, 1023);
@@ -74,7 +69,6 @@ static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
   if (!status) status = within(error, "heartbeat", d->heartbeat, d->period, (double)INFINITY);
   if (!status) status = within(error, "stack", (double)d->stack, 65536, 0x1p26);
   if (!status) status = within(error, "rows", d->rows, 0, 0x1p20);
-  if (!status && d->driver->units) status = within(error, "units", d->driver->units(d->device), 0, ETHD_UNITS_MAX);
   return status ? status : check_period(d, error);
 }
 
@@ -83,15 +77,12 @@ static int64_t nanoseconds(double s) { return s < 1e9 ? llrint(1e9 * s) : INT64_
 /* Returns how late the loop may be: the smaller of the application's limit and what any device tolerates. A slow
    device's samples lie farther apart, which says nothing about the loop's own lateness. */
 static double gap_of(const ethd_loop_def *d) {
-  bool is_limited = d->driver->limits && d->device && isfinite(d->driver->limits(d->device).gap);
+  bool is_limited = isfinite(ethd_device_limits(d->device).gap);
   return is_limited ? fmin(d->gap, ethd_limits_device().gap) : d->gap;
 }
 
 /* Returns how far apart two joint samples may be according to application and device, s. */
-static double between_samples(const ethd_loop_def *d) {
-  if (!d->driver->limits || !d->device) return d->gap;
-  return fmin(d->gap, d->driver->limits(d->device).gap);
-}
+static double between_samples(const ethd_loop_def *d) { return fmin(d->gap, ethd_device_limits(d->device).gap); }
 
 ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error) {
   *out = NULL;

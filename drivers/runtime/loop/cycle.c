@@ -111,14 +111,14 @@ static void watch_age(ethd_loop *l, ethd_status status) {
 
 static void disarm(ethd_loop *l) {
   atomic_store_explicit(&l->armed, 0, memory_order_relaxed);
-  if (l->was_armed) l->def.driver->safe(l->def.device);
+  if (l->was_armed) ethd_device_safe(l->def.device);
   l->was_armed = 0;
 }
 
 /* False when there is no newer sample than at the last step: the torque is then held, unless the loop was disarmed. */
 static bool read_device(ethd_loop *l) {
   if (!l->held) memset(&l->sense, 0, sizeof l->sense);
-  ethd_status status = l->def.driver->read(l->def.device, l->due, &l->sense);
+  ethd_status status = ethd_device_read(l->def.device, l->due, &l->sense);
   watch_age(l, status);
   ethd__loop_rows(l, &l->sense);
   if (status > 0 && !is_pressing(&l->sense)) {
@@ -156,7 +156,7 @@ static void write_device(ethd_loop *l, ethd_command *command) {
   }
   l->row.share = s;
   l->row.armed = l->was_armed;
-  if (l->def.driver->write(l->def.device, l->due, command) >= 0) return;
+  if (ethd_device_write(l->def.device, l->due, command) >= 0) return;
   raise(&l->stats.write_failures, 1);
   disarm(l);
 }
@@ -204,7 +204,7 @@ void ethd__loop_rest(ethd_loop *l) {
   ethd_command zero = {.safe = 1};
   l->was_armed = 1;
   disarm(l);
-  (void)!l->def.driver->write(l->def.device, l->due, &zero);
+  (void)!ethd_device_write(l->def.device, l->due, &zero);
 }
 
 /* ---- the grid ---- */

@@ -7,17 +7,13 @@
 
 /* ---- the virtual clock ---- */
 
-uint32_t ethd__loop_units(const ethd_loop *l) {
-  uint32_t (*units)(const void *) = l->def.driver->units;
-  uint32_t n = units ? units(l->def.device) : 0;
-  return n < ETHD_UNITS_MAX ? n : ETHD_UNITS_MAX; /* create has checked it, but the device may say more now */
-}
+uint32_t ethd__loop_units(const ethd_loop *l) { return ethd_device_units(l->def.device); }
 
 void ethd_loop_tick(ethd_loop *l) {
   if (!l->def.clock) return; /* the loop's thread does its ticks */
   uint64_t before = ethd__denormals_flush();
   for (uint32_t i = 0; i < ethd__loop_units(l); i++)
-    if (l->def.driver->service(l->def.device, i, ethd__loop_now(l)) < 0) l->stats.service_failures++;
+    if (ethd_device_service(l->def.device, i, ethd__loop_now(l)) < 0) l->stats.service_failures++;
   (void)!ethd__loop_turn(l);
   ethd__denormals_restore(before);
 }

@@ -40,7 +40,7 @@ static void *run_unit(void *unit_) {
   ethd_loop *l = unit->loop;
   (void)ethd__denormals_flush(); /* not the application's traps, which a thread inherits */
   while (!atomic_load_explicit(&l->stop, memory_order_relaxed)) {
-    ethd_status status = l->def.driver->service(l->def.device, unit->number, ethd__clock_now());
+    ethd_status status = ethd_device_service(l->def.device, unit->number, ethd__clock_now());
     if (status < 0) __atomic_fetch_add(&l->stats.service_failures, 1, __ATOMIC_RELAXED);
     if (status) pause_a_little();
   }
@@ -183,7 +183,7 @@ static bool take_over(ethd_loop *l) {
 
 ethd_status ethd_loop_enable(ethd_loop *l) {
   if (!take_over(l)) return ETHD_STATUS_BUSY;
-  ethd_status status = l->def.driver->start(l->def.device);
+  ethd_status status = ethd_device_start(l->def.device);
   if (!status) {
     ethd_counters counters;
     ethd_control_counters(l->def.control, &counters);
@@ -202,10 +202,9 @@ static bool are_angles(const double q[2]) {
 }
 
 ethd_status ethd_loop_home(ethd_loop *l, const double *q) {
-  if (!l->def.driver->home) return ETHD_E_ARGUMENT;
   if (q && !are_angles(q)) return ETHD_E_RANGE;
   if (ethd_loop_armed(l) || !take_over(l)) return ETHD_STATUS_BUSY;
-  ethd_status status = l->def.driver->home(l->def.device, q);
+  ethd_status status = ethd_device_home(l->def.device, q);
   if (!status && !l->row.trace.fault) ethd_control_restart(l->def.control);
   atomic_store_explicit(&l->mode, ETHD__LOOP_RUNS, memory_order_release);
   return status;

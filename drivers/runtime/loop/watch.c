@@ -26,7 +26,7 @@ static int64_t left_to_live(const ethd_loop *l, const watch *w) {
 static void let_go(ethd_loop *l) {
   ethd_loop_raise(l, ETHD_FAULT_LOOP);
   ethd_loop_disarm(l);
-  l->def.driver->safe(l->def.device);
+  ethd_device_safe(l->def.device);
 }
 
 static void look(ethd_loop *l, watch *w) {

@@ -1,0 +1,205 @@
+#include "device/device.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "settings/config_parts.h"
+
+void ethd__device_foreign(ethd_device *d, uint32_t i, const char *doing) {
+  if (!d->at[i].is_foreign || !ethd__foreign_code) return;
+  if (doing) snprintf(d->doing, sizeof d->doing, "%s of the driver %s", doing, d->at[i].driver->id);
+  ethd__foreign_code(doing ? d->doing : NULL, d->hang_time);
+}
+
+/* ---- [rt] ---- */
+
+static ethd_status worse(ethd_status a, ethd_status b) {
+  if (a < 0 || b < 0) return a < b ? a : b;
+  return a ? a : b;
+}
+
+static ethd_status read_all(const ethd_device *d, int64_t now_ns, ethd_sense *out) ETHD_RT {
+  ethd_status status = ETHD_OK;
+  for (uint32_t i = 0; i < d->count; i++)
+    if (d->at[i].driver->read) status = worse(status, d->at[i].driver->read(d->at[i].state, now_ns, out));
+  return status;
+}
+
+ethd_status ethd_device_read(ethd_device *d, int64_t now_ns, ethd_sense *out) ETHD_RT {
+  ethd_sense own;
+  if (!d->inject) return read_all(d, now_ns, out);
+  ethd_status status = ethd__inject_before(d->inject, now_ns, &own);
+  if (!status) status = read_all(d, now_ns, &own);
+  if (status >= 0) ethd__inject_after(d->inject, status, &own, out);
+  return status;
+}
+
+ethd_status ethd_device_write(ethd_device *d, int64_t now_ns, const ethd_command *command) ETHD_RT {
+  ethd_command own = *command;
+  ethd_status status = d->inject ? ethd__inject_command(d->inject, &own) : ETHD_OK;
+  if (status) return status < 0 ? status : ETHD_OK; /* positive: it is dropped */
+  for (uint32_t i = 0; i < d->count; i++)
+    if (d->at[i].driver->write) status = worse(status, d->at[i].driver->write(d->at[i].state, now_ns, &own));
+  return status;
+}
+
+void ethd_device_safe(ethd_device *d) ETHD_RT {
+  for (uint32_t i = 0; i < d->count; i++)
+    if (d->at[i].driver->safe) d->at[i].driver->safe(d->at[i].state);
+}
+
+/* ---- a child made by fork ---- */
+
+/* The parent process still uses the lines, the sockets and the guardian's page. A driver that is called in the child
+   would change them for the parent. */
+static bool is_forked(const ethd_device *d) { return d->process != getpid(); }
+
+/* ---- I/O ---- */
+
+uint32_t ethd_device_units(const ethd_device *d) {
+  uint32_t sum = 0;
+  for (uint32_t i = 0; i < d->count; i++) sum += d->at[i].units;
+  return sum;
+}
+
+ethd_status ethd_device_service(ethd_device *d, uint32_t unit, int64_t now_ns) {
+  if (is_forked(d)) return ETHD_E_DEVICE;
+  ethd_status status = d->inject ? ethd__inject_service(d->inject, now_ns) : ETHD_OK;
+  if (status) return status;
+  for (uint32_t i = 0; i < d->count; i++) {
+    uint32_t own = d->at[i].units;
+    if (unit < own) return d->at[i].driver->service(d->at[i].state, unit, now_ns);
+    unit -= own;
+  }
+  return ETHD_E_ARGUMENT;
+}
+
+/* ---- [main] ---- */
+
+static ethd_status start_one(ethd_device *d, uint32_t i) {
+  if (!d->at[i].driver->start) return ETHD_OK;
+  ethd__device_foreign(d, i, "start");
+  ethd_status status = d->at[i].driver->start(d->at[i].state);
+  ethd__device_foreign(d, i, NULL);
+  return status;
+}
+
+static ethd_status stop_one(ethd_device *d, uint32_t i) {
+  const ethd_driver *driver = d->at[i].driver;
+  ethd_status status = ETHD_OK;
+  ethd__device_foreign(d, i, "stop");
+  if (driver->stop)
+    status = driver->stop(d->at[i].state);
+  else if (driver->safe)
+    driver->safe(d->at[i].state);
+  ethd__device_foreign(d, i, NULL);
+  return status;
+}
+
+/* Returns which driver is the i-th to start, from 0, and the i-th from the end to stop. Those that take torques start
+   last: a drive that is enabled doesn't wait for another driver, however long that takes. */
+static uint32_t turn(const ethd_device *d, uint32_t i) {
+  uint32_t order[ETHD_DRIVERS_MAX] = {0}, n = 0;
+  for (uint32_t k = 0; k < d->count; k++)
+    if (!d->at[k].driver->write) order[n++] = k;
+  for (uint32_t k = 0; k < d->count; k++)
+    if (d->at[k].driver->write) order[n++] = k;
+  return order[i];
+}
+
+/* Starts all drivers; when one refuses, those that have started are stopped. */
+ethd_status ethd_device_start(ethd_device *d) {
+  if (is_forked(d)) return ETHD_E_DEVICE;
+  if (d->inject && ethd__inject_start(d->inject)) return ETHD_E_DEVICE;
+  for (uint32_t i = 0; i < d->count; i++) {
+    ethd_status status = start_one(d, turn(d, i));
+    if (!status) continue;
+    while (i--) (void)!stop_one(d, turn(d, i));
+    return status;
+  }
+  return ETHD_OK;
+}
+
+ethd_status ethd_device_stop(ethd_device *d) {
+  ethd_status status = ETHD_OK;
+  if (is_forked(d)) return ETHD_E_DEVICE;
+  for (uint32_t i = d->count; i--;) status = worse(status, stop_one(d, turn(d, i)));
+  return status;
+}
+
+void ethd_device_close(ethd_device *d) {
+  if (!d) return;
+  for (uint32_t i = is_forked(d) ? 0 : d->count; i--;)
+    if (d->at[i].state) d->at[i].driver->close(d->at[i].state);
+  ethd__inject_free(d->inject);
+  free(d);
+}
+
+ethd_limits ethd_device_limits(const ethd_device *d) {
+  ethd_limits most = ethd_limits_none();
+  for (uint32_t i = 0; i < d->count; i++) {
+    if (!d->at[i].driver->limits) continue;
+    ethd_limits own = d->at[i].driver->limits(d->at[i].state);
+    most = ethd_limits_narrower(&most, &own);
+  }
+  return most;
+}
+
+uint32_t ethd_device_figures(const ethd_device *d, ethd_figure *out, uint32_t max) {
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < d->count; i++) {
+    if (!d->at[i].driver->figures) continue;
+    uint32_t own = d->at[i].driver->figures(d->at[i].state, out + n, max - n);
+    n += own < max - n ? own : max - n;
+  }
+  if (d->inject && n < max) out[n++] = ethd__inject_figure(d->inject);
+  return n;
+}
+
+const char *ethd_device_remark(const ethd_device *d, uint32_t i) {
+  const char *own = NULL;
+  if (d->inject && !i--) return "faults are injected: this is no run to trust";
+  for (uint32_t k = 0; k < d->count && !own; k++) {
+    if (!d->at[k].driver->remark) continue;
+    uint32_t n = 0;
+    while (n < ETHD_REMARKS_MAX && d->at[k].driver->remark(d->at[k].state, n)) n++;
+    if (i < n) own = d->at[k].driver->remark(d->at[k].state, i);
+    i -= i < n ? i : n;
+  }
+  return own;
+}
+
+void ethd_device_clear(ethd_device *d) {
+  for (uint32_t i = 0; i < d->count && !is_forked(d); i++)
+    if (d->at[i].driver->clear) d->at[i].driver->clear(d->at[i].state);
+}
+
+ethd_status ethd_device_home(ethd_device *d, const double q[2]) {
+  ethd_status status = ETHD_E_ARGUMENT; /* none of the drivers has anything to find out */
+  if (is_forked(d)) return ETHD_E_DEVICE;
+  for (uint32_t i = 0; i < d->count; i++) {
+    if (!d->at[i].driver->home) continue;
+    status = d->at[i].driver->home(d->at[i].state, q);
+    if (status) return status;
+  }
+  return status;
+}
+
+const char *ethd_device_why(const ethd_device *d) {
+  const char *says = NULL;
+  for (uint32_t i = 0; i < d->count && !(says && says[0]); i++)
+    if (d->at[i].driver->why) says = d->at[i].driver->why(d->at[i].state);
+  return says ? says : "";
+}
+
+/* Later drivers add what earlier ones don't know. */
+ethd_dynamics ethd_device_dynamics(const ethd_device *d) {
+  ethd_dynamics all = ethd_dynamics_unknown();
+  for (uint32_t i = 0; i < d->count; i++) {
+    if (!d->at[i].driver->dynamics) continue;
+    ethd_dynamics own = d->at[i].driver->dynamics(d->at[i].state);
+    all = ethd_dynamics_known(&all, &own);
+  }
+  return all;
+}
