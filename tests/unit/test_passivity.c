@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "bounds/stability.h"
-#include "stress/rig.h"
+#include "stress/mass.h"
 #include "unit/rig.h"
 
 #define MASS 0.25
@@ -34,33 +34,33 @@ static void poll(ethd_control *control, run *out) {
 /* 3 s pressed with 4 N against a wall of stiffness K, damping B on the way in. */
 static run press(double K, double B, int delay, double energy) {
   enum { TICKS = 3000 };
-  static ethd__stress_rig ring;
+  static mass_rig ring;
   run out = {.most_force = -INFINITY};
   double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
-  ethd__stress_rig_open(&ring, MASS, -0.001);
+  mass_open(&ring, MASS, -0.001);
   ring.delay = delay;
   ring.measured = 1;
   ring.push = (ethd_vec){-4, 0};
-  ring.setup.limits.energy = energy;
-  ring.setup.dynamics = (ethd_dynamics){{MASS, MASS}, NAN, NAN, 1e-3 * delay};
-  ethd_setup_transition(&ring.setup, &ethd_transition_smooth);
-  ethd_setup_contact(&ring.setup, &ethd_contact_kelvin_voigt);
+  ring.on.setup.limits.energy = energy;
+  ring.on.setup.dynamics = (ethd_dynamics){{MASS, MASS}, NAN, NAN, 1e-3 * delay};
+  ethd_setup_transition(&ring.on.setup, &ethd_transition_smooth);
+  ethd_setup_contact(&ring.on.setup, &ethd_contact_kelvin_voigt);
   const ethd_law *law = &ethd_contact_kelvin_voigt.law;
-  ring.setup.contact_p[ethd_params_find(law->params, law->param_count, "k_e")] = K;
-  ring.setup.contact_p[ethd_params_find(law->params, law->param_count, "b_e")] = B;
-  ethd__stress_rig_start(&ring, 0);
+  ring.on.setup.contact_p[ethd_params_find(law->params, law->param_count, "k_e")] = K;
+  ring.on.setup.contact_p[ethd_params_find(law->params, law->param_count, "b_e")] = B;
+  mass_start(&ring, 0);
   for (int i = 0; i < TICKS; i++) {
-    const ethd_trace *t = ethd__stress_rig_tick(&ring);
+    const ethd_trace *t = mass_tick(&ring);
     if (t->fault) {
       out.fault = (ethd_fault)t->fault;
       break;
     }
-    if (i < 250) out.early = swing(&lo[0], &hi[0], ethd__stress_rig_depth(&ring));
-    if (i >= TICKS - 250) out.late = swing(&lo[1], &hi[1], ethd__stress_rig_depth(&ring));
+    if (i < 250) out.early = swing(&lo[0], &hi[0], mass_depth(&ring));
+    if (i >= TICKS - 250) out.late = swing(&lo[1], &hi[1], mass_depth(&ring));
     out.most_force = fmax(out.most_force, -t->fe[0]); /* n = (-1, 0) */
   }
-  poll(ring.control, &out);
-  ethd__stress_rig_close(&ring);
+  poll(ring.on.control, &out);
+  mass_close(&ring);
   return out;
 }
 
