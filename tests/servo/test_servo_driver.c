@@ -65,24 +65,36 @@ static ethd_status tick(double torque1, double torque2) {
   return last;
 }
 
-/* The plant's map with one line changed, opened. */
-static ethd_status open_changed(const char *was, const char *now_) {
+static char *map_text(void) {
   char *text, path[64];
   size_t length;
   snprintf(path, sizeof path, "%s/plant.map", folder);
   ck_assert_int_eq(ethd_text_read(path, 1 << 16, &text, &length, message), ETHD_OK);
-  char *at = strstr(text, was), *all;
-  ck_assert_msg(at != NULL, "no %s", was);
-  ck_assert_int_ge(asprintf(&all, "%.*s%s%s", (int)(at - text), text, now_, at + strlen(was)), 0);
+  return text;
+}
+
+/* Opens with another map; a third setting is the caller's. */
+static ethd_status open_map(const char *text, const ethd_setting *more) {
+  char path[64];
   snprintf(path, sizeof path, "%s/changed.map", folder);
-  ck_assert_int_eq(ethd_text_write(path, all, strlen(all), message), ETHD_OK);
-  free(text);
-  free(all);
+  ck_assert_int_eq(ethd_text_write(path, text, strlen(text), message), ETHD_OK);
   mock_start(&drive, 0);
-  ethd_setting settings[] = {{"map", "changed.map", 1}, {"port", drive.port, 2}};
-  ethd_status status = open_with(settings, 2);
+  ethd_setting settings[3] = {{"map", "changed.map", 1}, {"port", drive.port, 2}};
+  if (more) settings[2] = *more;
+  ethd_status status = open_with(settings, more ? 3 : 2);
   now = 0;
   unlink(path);
+  return status;
+}
+
+/* The plant's map with one line changed, opened. */
+static ethd_status open_changed(const char *was, const char *now_) {
+  char *text = map_text(), *at = strstr(text, was), *all;
+  ck_assert_msg(at != NULL, "no %s", was);
+  ck_assert_int_ge(asprintf(&all, "%.*s%s%s", (int)(at - text), text, now_, at + strlen(was)), 0);
+  ethd_status status = open_map(all, NULL);
+  free(text);
+  free(all);
   return status;
 }
 
@@ -255,9 +267,7 @@ TEST(test_speed_limit) {
   close_device();
 }
 
-TEST(test_home_and_joint) {
-  char *text, path[64];
-  size_t length;
+TEST(test_home) {
   mock_start(&drive, 0);
   drive.words[MOCK_POSITION1 + 1] = 500;
   ethd_setting home[] = {{"map", "plant.map", 1}, {"port", drive.port, 2}, {"q1", "0.7", 3}, {"q2", "-0.3", 4}};
@@ -266,10 +276,13 @@ TEST(test_home_and_joint) {
   tick(0, 0);
   ck_assert_double_eq_tol(sense.q[0], 0.7, 1e-12);
   ck_assert_double_eq_tol(sense.q[1], -0.3, 1e-12);
-  servo->close(device);
-  /* a map of one axis, for the second joint */
-  snprintf(path, sizeof path, "%s/plant.map", folder);
-  ck_assert_int_eq(ethd_text_read(path, 1 << 16, &text, &length, message), ETHD_OK);
+  close_device();
+}
+
+/* A map of one axis, for the second joint. */
+TEST(test_joint) {
+  const ethd_setting joint = {"joint", "2", 3};
+  char *text = map_text();
   for (const char **name = (const char *[]){"[register torque2]", "[register seen2]", "[register position2]",
                                             "[register measured2]", NULL};
        *name; name++) {
@@ -277,40 +290,23 @@ TEST(test_home_and_joint) {
     while (strncmp(to, "\n\n", 2)) to++;
     memset(from, '\n', (size_t)(to - from));
   }
-  snprintf(path, sizeof path, "%s/one.map", folder);
-  ck_assert_int_eq(ethd_text_write(path, text, length, message), ETHD_OK);
+  ck_assert_msg(open_map(text, &joint) == ETHD_OK, "%s", message);
   free(text);
-  ethd_setting one[] = {{"map", path, 1}, {"port", drive.port, 2}, {"joint", "2", 3}};
-  ck_assert_msg(open_with(one, 3) == ETHD_OK, "%s", message);
   ck_assert_int_eq(servo->start(device), ETHD_OK);
-  now = 0;
+  drive.words[MOCK_POSITION1 + 1] = 50;
   tick(0.1, 0.2);
   tick(0, 0);
-  ck_assert_double_eq_tol(sense.q[1], 500 * COUNT, 1e-12);
+  ck_assert_double_eq_tol(sense.q[1], 50 * COUNT, 1e-12);
   ck_assert_double_eq(sense.q[0], 0);
   ck_assert_int_eq(raw(MOCK_TORQUE1), (int)lrint(0.2 * NM));
-  unlink(path);
   close_device();
 }
 
 TEST(test_unconfirmed) {
-  char *text, path[64];
-  size_t length;
-  snprintf(path, sizeof path, "%s/plant.map", folder);
-  ck_assert_int_eq(ethd_text_read(path, 1 << 16, &text, &length, message), ETHD_OK);
-  char *at = strstr(text, "address = 9\n"), *all;
-  ck_assert_int_ge(asprintf(&all, "%.*saddress = 9 ; unconfirmed\n%s", (int)(at - text), text, at + 12), 0);
-  snprintf(path, sizeof path, "%s/guess.map", folder);
-  ck_assert_int_eq(ethd_text_write(path, all, strlen(all), message), ETHD_OK);
-  mock_start(&drive, 0);
-  ethd_setting settings[] = {{"map", "guess.map", 1}, {"port", drive.port, 2}};
-  ck_assert_msg(open_with(settings, 2) == ETHD_OK, "%s", message);
+  ck_assert_msg(open_changed("address = 9\n", "address = 9 ; unconfirmed\n") == ETHD_OK, "%s", message);
   ck_assert_str_eq(servo->remark(device, 0),
                    "1 of 17 registers is unconfirmed: check its address in the drive's manual (step 2)");
   close_device();
-  free(text);
-  free(all);
-  unlink(path);
 }
 
 TEST(test_settings_refused) {
@@ -678,20 +674,11 @@ TEST(test_camera) {
 
 /* What measures says how often; a servo without a finger says nothing of it. */
 TEST(test_no_finger) {
-  char *text, path[64];
-  size_t length;
-  snprintf(path, sizeof path, "%s/plant.map", folder);
-  ck_assert_int_eq(ethd_text_read(path, 1 << 16, &text, &length, message), ETHD_OK);
-  char *from = strstr(text, "[register reading_x]"), *to = strstr(text, "[enable]");
-  memset(from, '\n', (size_t)(to - from));
-  snprintf(path, sizeof path, "%s/blind.map", folder);
-  ck_assert_int_eq(ethd_text_write(path, text, length, message), ETHD_OK);
+  char *text = map_text(), *from = strstr(text, "[register reading_x]");
+  memset(from, '\n', (size_t)(strstr(text, "[enable]") - from));
+  ck_assert_msg(open_map(text, NULL) == ETHD_OK, "%s", message);
   free(text);
-  mock_start(&drive, 0);
-  ethd_setting settings[] = {{"map", "blind.map", 1}, {"port", drive.port, 2}};
-  ck_assert_msg(open_with(settings, 2) == ETHD_OK, "%s", message);
   ck_assert(isinf(servo->limits(device).finger_age) && isinf(servo->limits(device).finger_lost));
-  unlink(path);
   close_device();
 }
 

@@ -1,4 +1,5 @@
-/* Register maps: those that come with the programs, every refusal with its line, and texts that are no maps. */
+/* Register maps: those that come with the programs, and every refusal with its line. Texts that are no maps are tried in
+   fuzz/test_fuzz_map.c. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +7,7 @@
 #include "servo/wire.h"
 #include "servo/words.h"
 #include "text/text.h"
-#include "unit/mutate.h"
+#include "unit/draw.h"
 #include "unit/rig.h"
 
 static char text[1 << 16], message[ETHD_MESSAGE_MAX];
@@ -515,41 +516,4 @@ TEST(test_rounds_towards_zero) {
   ck_assert_double_eq(ethd__servo_raw(named("torque1"), 0.0466), 0);
   ck_assert_double_eq(ethd__servo_raw(named("torque1"), -0.12), -2);
   ck_assert_double_eq(ethd__servo_raw(named("torque1"), 1.5 * 0.04668), 1);
-}
-
-/* ---- no maps ---- */
-
-TEST(test_any_text) {
-  static const char *const words[] = {"[register torque1]",
-                                      "\n",
-                                      "=",
-                                      "0x",
-                                      "echo = seen1\n",
-                                      "step1 = ",
-                                      "wait",
-                                      "1e999",
-                                      "type = f32\n",
-                                      "order = low-first\n",
-                                      "[",
-                                      "]",
-                                      "min = ",
-                                      "NaN",
-                                      NULL};
-  static const char *const seeds[] = {"apps/config/plant.map", "apps/config/svd48v.map", "apps/config/roboteq.map"};
-  static char out[sizeof text];
-  const char *given = getenv("ETHD_FUZZ");
-  uint64_t count = given ? (uint64_t)strtoull(given, NULL, 10) : 6000, passed = 0;
-  for (int k = 0; k < 3; k++) {
-    read_map(seeds[k]);
-    size_t length = strlen(text);
-    for (uint64_t i = 0; i < count / 3; i++) {
-      size_t n = mutate(text, length, words, i, out, sizeof out);
-      message[0] = 0;
-      ethd_status status = ethd__servo_map_parse(out, n, "m.map", &map, message);
-      passed += status == ETHD_OK;
-      if (status) ck_assert_msg(*message && !strchr(message, '\n'), "case %d %llu", k, (unsigned long long)i);
-      for (uint32_t r = 0; !status && ethd__servo_risk(&map, r); r++) continue;
-    }
-  }
-  ck_assert_uint_gt(passed, count / 100);
 }
