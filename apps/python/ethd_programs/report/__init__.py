@@ -24,7 +24,6 @@ def _arguments(arguments: Sequence[str]) -> Any:
                     "the paper's, delays between sight and touch, reasons, the survey, and strategies compared within participants.", _MORE)
     parser.add_argument("folders", nargs="*")
     parser.add_argument("--beside", metavar="DIR", help="show the taps of another folder beside this one's")
-    parser.add_argument("--coverage", metavar="N", help="instead of a report, print how often its intervals hold the truth in N simulated studies")
     parser.add_argument("--force", action="store_true", help="replace a report that is there")
     parser.add_argument("-o", "--out", metavar="DIR", help="where the report goes (default: report, in the study's folder)")
     parser.add_argument("--plugins", action="store_true", help="run the plugins that the folder's configuration names")
@@ -35,12 +34,11 @@ def _arguments(arguments: Sequence[str]) -> Any:
     parser.add_argument("--tap", metavar="NAME", help="draw this tap (P02-06-004), not the typical one of each cell")
     parser.finish()
     arg = parser.parse_intermixed_args(arguments)
-    if not arg.folders and arg.coverage is None:
+    if not arg.folders:
         parser.error("DIR is needed")
     if len(arg.folders) > _STATIONS:
         parser.error(f'"{arg.folders[_STATIONS]}": {_STATIONS} folders are allowed')
     arg.point, arg.seed = _whole("--point", arg.point, 0, _POINTS), _whole("--seed", arg.seed, 0, 2**64 - 1)
-    arg.coverage = None if arg.coverage is None else _whole("--coverage", arg.coverage, 1, 1000000)
     return arg
 
 
@@ -48,17 +46,6 @@ def _whole(option: str, text: str, low: int, high: int) -> int:
     if not (text.isascii() and text.isdigit() and low <= int(text) <= high):
         raise Refusal(f"{option}: found {quoted(text)}, a whole number from {low} to {high} is allowed")
     return int(text)
-
-
-def _print_coverage(runs: int, seed: int) -> int:
-    from ethd_programs.report.coverage import TAPS, simulate
-
-    print(f"Of {runs} simulated studies (normal, {TAPS} taps a cell) so many have their truth within the 95 % interval:\n\n"
-          "participants  bootstrap of a median  bootstrap of Cliff's delta  t of a mean difference  d_z, noncentral t")
-    for people in (3, 6, 12, 24):
-        c = simulate(people, runs, seed)
-        print(f"{c.people:12}  {c.median:21.3f}  {c.cliff:26.3f}  {c.mean:22.3f}  {c.effect:17.3f}", flush=True)
-    return DONE
 
 
 def _print_power(arg: Any, scratch: str) -> int:
@@ -115,8 +102,6 @@ def _main(arguments: Sequence[str]) -> int:
     for package in ("numpy", "scipy"):
         if importlib.util.find_spec(package) is None:
             raise Refusal(f"{package}: no such Python package; reports need it (Debian: python3-{package}; pip: libethd's extra [report])", FAILED)
-    if arg.coverage is not None:
-        return _print_coverage(arg.coverage, arg.seed)
     try:
         with tempfile.TemporaryDirectory(prefix="ethd-report-") as scratch:
             return (_print_power if arg.power else _report)(arg, scratch)

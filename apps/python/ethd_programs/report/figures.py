@@ -4,7 +4,6 @@ from typing import Dict, List, Optional
 import numpy as np
 
 from ethd_programs.cli import plural
-from ethd_programs.report.coverage import known
 from ethd_programs.report.output import Cell as Text
 from ethd_programs.report.output import harmless
 from ethd_programs.report.page import interval_text, mean_text, number_text
@@ -105,8 +104,7 @@ def _summary(r: Report) -> None:
     people = len(r.taps.people)
     if people < FEWEST_PEOPLE:
         r.page.put('<p class="note">The medians have no 95 %% interval: a bootstrap of %d participant%s would give little more than the '
-                   "smallest and largest of them, and hold the truth in about %.0f %%, not 95 %%, of such studies.</p>\n",
-                   people, plural(people), 100 * known(people).median)
+                   "smallest and largest of them.</p>\n", people, plural(people))
     r.page.table("Every figure by cell: valid test taps", ("cell", "n (people)", "mean (sd)", "median", "quartiles", "extremes",
                                                            "median, 95 %"), 1)
     rows: List[List[Text]] = []

@@ -15,7 +15,7 @@ Numbers = NDArray[np.float64]
 Weights = NDArray[np.int32]  #: how often each tap counts: a row for each draw, a column for each tap
 NAN = math.nan
 #: With fewer people no test is made and no bootstrap interval shown: the smallest two-sided p that the signs of five people
-#: can have is 0.0625, and the bootstrap's intervals of 95 % cover far less (coverage.py).
+#: can have is 0.0625, and the bootstrap's intervals of 95 % cover far less.
 FEWEST_PEOPLE = 6
 DRAWS, FEW_DRAWS = 2000, 200  #: of a bootstrap; fewer when they would be more than 2e7 taps in all
 _EXACT_SIGNS = 16  #: people up to whom all signs are tried

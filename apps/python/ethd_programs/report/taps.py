@@ -128,7 +128,7 @@ class Taps:
         return next((c for c in self.cells if (c.law, c.speed.word) == (law, speed)), None)
 
     def by_person(self, cell: Optional["Cell"], values: Optional["Numbers"], how: str = "median") -> Numbers:
-        """One number for each person: the median, mean or most of their values in the cell, which has a value for each tap;
+        """One number for each person: the median or mean of their values in the cell, which has a value for each tap;
         NaN without any."""
         out = np.full(len(self.people), NAN)
         if cell is None or values is None:
@@ -144,7 +144,7 @@ class Taps:
         if how == "median":
             found = (value[first + (count - 1) // 2] + value[first + count // 2]) / 2
         else:
-            found = value[first + count - 1] if how == "most" else np.add.reduceat(value, first) / count
+            found = np.add.reduceat(value, first) / count
         out[person[first]] = found
         return out
 

@@ -6,7 +6,6 @@ import numpy as np
 
 from ethd_programs.cli import plural
 from ethd_programs.report import claims as paper
-from ethd_programs.report.coverage import TAPS, known
 from ethd_programs.report.page import Page
 from ethd_programs.report.report import LEADERS, Report
 from ethd_programs.report.statistics import DRAWS, FEW_DRAWS, FEWEST_PEOPLE
@@ -112,9 +111,7 @@ def _certainty(r: Report) -> None:
         r.page.put("That is too few for any test (the smallest two-sided p would be %.3g): differences are given with wide intervals, and nothing of "
                    "this study is called significant. ", min(1, 2 / 2**n))
     else:
-        c = known(n)
-        r.page.put("Tests are made within participants and corrected by Holm; of simulated studies with %d participants, %.1f %% (mean differences) "
-                   "and %.1f %% (medians) have the truth within the interval that is called 95 %%. ", c.people, 100 * c.mean, 100 * c.median)
+        r.page.put("Tests are made within participants and corrected by Holm. ")
     r.page.put("%s</li>\n", r.caveat)
     if r.beside:
         b, people = r.beside, len(r.beside.people)
@@ -161,7 +158,7 @@ _METHODS = (
     "significant is never called alike.",
     "Holm's correction is made within the family that each table names.",
     "Bootstrap intervals (of medians and of Cliff's delta) are 95 % percentile intervals: participants are drawn with replacement, then taps of "
-    "each. They are shown from six participants on.",
+    "each. They are shown from six participants on: of simulated studies with six, 95 % have the true median within them, with three only 87 %.",
     "Survey answers are ordinal: counts, medians and quartiles; strategies are compared by Wilcoxon's signed rank test with Pratt's treatment of "
     "equal answers, exact; three or more by Friedman's test.",
     "n points into the wall: speeds are positive toward it, negative away. The instant of sight is the one at which the finger's front reaches the "
@@ -170,17 +167,8 @@ _METHODS = (
 
 
 def methods(r: Report) -> None:
-    n = len(r.taps.people)
-    c = known(n)
     r.page.heading("methods", "Methods")
     r.page.put("<ul>\n" + "".join(f"<li>{words}</li>\n" for words in _METHODS))
-    if n > 2:
-        nearest = "" if c.people == n else ", the nearest smaller number that was simulated"
-        r.page.put("<li>What 95 %% means here: of simulated studies with %d participants and %d taps a cell%s, the intervals held the truth in %.0f %% "
-                   "(t of a mean difference), %.0f %% (d_z)", c.people, TAPS, nearest, 100 * c.mean, 100 * c.effect)
-        if n >= FEWEST_PEOPLE:
-            r.page.put(", %.0f %% (bootstrap of a median) and %.0f %% (bootstrap of Cliff's delta)", 100 * c.median, 100 * c.cliff)
-        r.page.put(". <code>ethd-report --coverage 1000</code> simulates it again.</li>\n")
     r.page.put("<li>Whatever is drawn is drawn under seed %d: %d bootstrap samples, fewer (%d at least) of more than %d taps.</li>\n</ul>\n",
                r.seed, DRAWS, FEW_DRAWS, 10000)
 
