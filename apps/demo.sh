@@ -21,7 +21,6 @@ for speed in low high; do
   done
   plot "in='traces'; speed='$speed'; out='beside-$speed.png'; plant='$plant'" ahead-taps.gp
 done
-plot "in='taps.csv'; out='boxes.png'; plant='$plant'" boxes.gp
 
 # The paper's study as it was done, with three people; and a crowd of 400 beside it.
 rm -rf "$out/study" "$out/crowd"
@@ -33,7 +32,7 @@ rm -rf "$out/study" "$out/crowd"
 echo "pictures, in the manner of the paper's figures:"
 echo "  $out/smooth-low.png, offset-low.png, smooth-high.png, offset-high.png: figures 9 to 12, and abrupt-, predictive-"
 echo "  $out/beside-low.png, beside-high.png: smooth, offset and predictive beside each other"
-echo "  $out/boxes.png: figures 14 to 17"
+echo "  $out/study/report/boxes.png, beside-boxes.png: figures 14 to 17, of 3 people and of 400; encounter.png: figure 6"
 echo "and the figures behind them: $out/taps.csv, $out/traces/"
 echo
 echo "the paper's study, 3 simulated people, 3 valid taps in each of 4 cells, every tick of it: $out/study"
