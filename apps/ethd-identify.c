@@ -35,7 +35,7 @@ enum { BASE = 256, CSV, PLOT, JUDGE, EXCITE, RECORD, FORCE, SHARE, TORQUE, HALF,
 
 static const struct argp_option options[] = {
     {"out", 'o', "MINE.plant", 0, "write the plant", 0},
-    {"base", BASE, "PLANT", 0, "plant whose values are kept for numbers that the recordings can't tell (n)", 0},
+    {"base", BASE, "PLANT", 0, "plant whose values are kept for numbers that the recordings can't tell (q)", 0},
     {"csv", CSV, "OUT.csv", 0, "write a stretch of motion, measured and predicted, and the residual's spectrum", 0},
     {"plot", PLOT, "OUT.png", 0, "draw that (gnuplot); OUT.csv is written beside it unless --csv says where", 0},
     {"judge", JUDGE, "PLANT", 0, "say how well this plant predicts the recordings", 0},
@@ -59,7 +59,8 @@ static struct {
   int folder_count;
   bool excite, plugins;
   ethd__excitation excitation;
-} arg = {.base = "n", .excitation = {.seconds = 60, .share = 0.5, .torque = NAN, .half = 0.04, .at = {0.25, 0.25}}};
+} arg = {.base = ETHD__PLANT,
+         .excitation = {.seconds = 60, .share = 0.5, .torque = NAN, .half = 0.04, .at = {0.25, 0.25}}};
 
 static void parse_at(const char *text) {
   char *comma = strchr(text, ','), first[64];
