@@ -254,20 +254,6 @@ TEST(test_every_law) {
   }
 }
 
-TEST(test_every_method) {
-  ethd_error error;
-  for (int i = 0; i < ETHD_VELOCITY_COUNT; i++)
-    ck_assert_int_eq(
-        ethd_params_check_table(ethd_velocity_methods[i].params, ethd_velocity_methods[i].param_count, &error),
-        ETHD_OK);
-  for (int i = 0; i < ETHD_FILTER_COUNT; i++)
-    ck_assert_int_eq(ethd_params_check_table(ethd_filter_methods[i].params, ethd_filter_methods[i].param_count, &error),
-                     ETHD_OK);
-  for (int i = 0; i < ETHD_FIT_COUNT; i++)
-    ck_assert_int_eq(ethd_params_check_table(ethd_fit_methods[i].params, ethd_fit_methods[i].param_count, &error),
-                     ETHD_OK);
-}
-
 /* A law of an older header is shorter and runs; one that stops short of step is refused, and one of a newer header,
    which may count on what this library doesn't give. */
 TEST(test_sizes_of_laws) {

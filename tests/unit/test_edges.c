@@ -52,13 +52,6 @@ TEST(test_raw_torque_is_zero) {
   rig_close(&r);
 }
 
-TEST(test_setup_that_nobody_made) {
-  ethd_setup setup;
-  memset(&setup, 0, sizeof setup);
-  ck_assert_int_eq(ethd_setup_set(&setup, "ring.radius", 0.01, &error), ETHD_E_ARGUMENT);
-  ck_assert_msg(strstr(error.name, "ethd_setup_default") != NULL, "%s", error.name);
-}
-
 /* Built-in laws are called directly, all of them; a copy is foreign. */
 TEST(test_whose_law_it_is) {
   const ethd_contact_law copy = ethd_contact_spring;
@@ -133,12 +126,6 @@ static ethd_status parse(const char *text) {
   return status;
 }
 
-/* What a message repeats of a file steers no terminal. */
-TEST(test_word_in_a_message) {
-  ck_assert_int_eq(parse("cir\033[2Jcle 0 0 1"), ETHD_E_UNKNOWN);
-  ck_assert_str_eq(error.name, "cir?[2Jcle");
-}
-
 TEST(test_names_of_materials) {
   static const char *const refused[] = {"a+b", "a!b", "a(b", "a,b", "a'b", "a/b", "a:b", "a@b", "a[b", "a`b", "a{b"};
   char text[64];
@@ -179,16 +166,6 @@ TEST(test_centre_of_a_circle) {
   ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){1, 2}, 5, &touch, 1), 1);
   ck_assert(touch.distance == -3 && ethd_vec_norm(touch.n) == 1);
   ethd_scene_destroy(s);
-}
-
-TEST(test_material_that_is_missing) {
-  const ethd_material one = {.name = "m"};
-  ethd_object_def circle = {
-      .shape = ETHD_SHAPE_CIRCLE, .material = 1, .numbers = (const double[]){0, 0, 1}, .count = 3};
-  const ethd_scene_def def = {.objects = &circle, .object_count = 1, .materials = &one, .material_count = 1};
-  ethd_scene *out;
-  ck_assert_int_eq(ethd_scene_create(&def, &out, &error), ETHD_E_RANGE);
-  ck_assert(error.found == 1 && error.min == -1 && error.max == 0);
 }
 
 /* ---- the ring's decoder ---- */

@@ -191,21 +191,32 @@ TEST(test_failure_at_a_swap) {
   rig_close(&r);
 }
 
-/* Numbers beyond any mechanism are refused, so that no estimator keeps them, also while a clear is waited for. */
+/* What is no number, or beyond any mechanism, is refused, so that no estimator keeps it, also while a clear is waited
+   for. */
 TEST(test_absurd_numbers) {
   const struct {
     size_t offset;
     int64_t have;
     double value, most, refused;
   } cases[] = {{offsetof(ethd_sense, q), 0, 0, 6.2831853071795865e6, 1e306},
+               {offsetof(ethd_sense, q[1]), 0, 0, 6.2831853071795865e6, -1e7},
+               {offsetof(ethd_sense, dq), ETHD_HAVE_DQ, ETHD_HAVE_DQ, 1e6, -1e300},
                {offsetof(ethd_sense, dq[1]), ETHD_HAVE_DQ, ETHD_HAVE_DQ, 1e6, 1.0001e6},
+               {offsetof(ethd_sense, finger), 0, ETHD_HAVE_FINGER, 1e6, 1e7},
                {offsetof(ethd_sense, finger[1]), 0, ETHD_HAVE_FINGER, 1e6, -1e300},
+               {offsetof(ethd_sense, finger[1]), ETHD_HAVE_START, ETHD_HAVE_FINGER, 1e6, 1e7},
                {offsetof(ethd_sense, finger_v), 0, ETHD_HAVE_FINGER, 1e6, 1e7},
+               {offsetof(ethd_sense, finger_v[1]), 0, ETHD_HAVE_FINGER, 1e6, -1e7},
                {offsetof(ethd_sense, ring), ETHD_HAVE_RING, ETHD_HAVE_RING, 1e6, -2e6},
+               {offsetof(ethd_sense, bodies[0]), ETHD_HAVE_BODY, ETHD_HAVE_BODY, 1e6, -1e12},
                {offsetof(ethd_sense, bodies[1]), ETHD_HAVE_BODY, ETHD_HAVE_BODY, 1e6, 1e300},
                {offsetof(ethd_sense, bodies[2]), ETHD_HAVE_BODY, ETHD_HAVE_BODY, 6.2831853071795865e6, -1e8},
+               {offsetof(ethd_sense, bodies[3]), ETHD_HAVE_BODY, ETHD_HAVE_BODY, 1e6, 1e12},
+               {offsetof(ethd_sense, bodies[4]), ETHD_HAVE_BODY, ETHD_HAVE_BODY, 1e6, 1e12},
                {offsetof(ethd_sense, bodies[5]), ETHD_HAVE_BODY, ETHD_HAVE_BODY, 1e6, 1e6 + 1}};
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+  for (size_t i = 0; i < 4 * sizeof cases / sizeof *cases; i++) {
+    const size_t k = i / 4;
+    const double absurd_ones[] = {cases[k].refused, NAN, INFINITY, -INFINITY};
     rig r;
     moody_open(&r, 1);
     r.setup.limits.speed = 10;
@@ -215,16 +226,16 @@ TEST(test_absurd_numbers) {
     rig_try(&r, &s);
     while (rig_poll(&r).kind != ETHD_EVENT_TAKEN) continue;
     absurd = s;
-    absurd.have |= cases[i].have;
-    *(double *)(void *)((char *)&absurd + cases[i].offset) = cases[i].refused;
+    absurd.have = cases[k].have == ETHD_HAVE_START ? ETHD_HAVE_START : s.have | cases[k].have;
+    *(double *)(void *)((char *)&absurd + cases[k].offset) = absurd_ones[i % 4];
     rig_try(&r, &absurd);
     moody_expect_safe(&r, ETHD_E_NOT_FINITE, ETHD_FAULT_INPUT);
-    moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_INPUT, cases[i].value);
+    moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_INPUT, (double)cases[k].value);
     rig_try(&r, &s);
     ck_assert_double_eq(r.trace.qd[0], 0);
     ethd_control_acknowledge(r.control);
     ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
-    *(double *)(void *)((char *)&absurd + cases[i].offset) = copysign(cases[i].most, cases[i].refused);
+    *(double *)(void *)((char *)&absurd + cases[k].offset) = copysign(cases[k].most, cases[k].refused);
     rig_try(&r, &absurd);
     ck_assert_int_ne(r.trace.fault, ETHD_FAULT_INPUT);
     rig_close(&r);

@@ -4,40 +4,6 @@
 
 #include "unit/moody.h"
 
-typedef struct bad_input {
-  size_t field;
-  int64_t have, value;
-} bad_input;
-
-#define IN(field) offsetof(ethd_sense, field)
-static const bad_input bad_inputs[] = {
-    {IN(q[0]), 0, 0},
-    {IN(q[1]), 0, 0},
-    {IN(dq[0]), ETHD_HAVE_DQ, ETHD_HAVE_DQ},
-    {IN(dq[1]), ETHD_HAVE_DQ, ETHD_HAVE_DQ},
-    {IN(finger[0]), ETHD_HAVE_FINGER, ETHD_HAVE_FINGER},
-    {IN(finger[1]), ETHD_HAVE_START, ETHD_HAVE_FINGER},
-    {IN(finger_v[1]), ETHD_HAVE_FINGER, ETHD_HAVE_FINGER},
-    {IN(ring[0]), ETHD_HAVE_RING, ETHD_HAVE_RING},
-};
-
-TEST_LOOP(test_input, 0, sizeof bad_inputs / sizeof *bad_inputs) {
-  const bad_input *c = &bad_inputs[_i];
-  const double values[] = {NAN, INFINITY, -INFINITY};
-  for (int k = 0; k < 3; k++) {
-    rig r;
-    moody_open(&r, 1);
-    ethd_sense s = moody_sense(&r);
-    rig_try(&r, &s);
-    memcpy((char *)&s + c->field, &values[k], sizeof(double));
-    s.have |= c->have;
-    rig_try(&r, &s);
-    moody_expect_safe(&r, ETHD_E_NOT_FINITE, ETHD_FAULT_INPUT);
-    moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_INPUT, (double)c->value);
-    rig_close(&r);
-  }
-}
-
 /* What the sense doesn't claim to have isn't looked at. */
 TEST(test_fields_that_are_not_there) {
   rig r;

@@ -92,6 +92,9 @@ TEST(test_numbers) {
                                       ".5",
                                       "-.5e1",
                                       "1e5",
+                                      "25E+3",
+                                      "100000e-4",
+                                      "1e00000000005",
                                       "1E-5",
                                       "1e+05",
                                       "0.1",
@@ -178,6 +181,16 @@ static const refusal refusals[] = {
     {"circle 0 1e 1", ETHD_E_SYNTAX, 1, "1e"},
     {"circle 0 1e+ 1", ETHD_E_SYNTAX, 1, "1e+"},
     {"circle 0 1e5.0 1", ETHD_E_SYNTAX, 1, "1e5.0"},
+    {"circle 0 1e5. 1", ETHD_E_SYNTAX, 1, "1e5."},
+    {"circle 0 .e1 1", ETHD_E_SYNTAX, 1, ".e1"},
+    {"circle 0 - 1", ETHD_E_SYNTAX, 1, "-"},
+    {"circle 0 -. 1", ETHD_E_SYNTAX, 1, "-."},
+    {"circle 0 1+5 1", ETHD_E_SYNTAX, 1, "1+5"},
+    {"circle 0 15A3 1", ETHD_E_SYNTAX, 1, "15A3"},
+    {"circle 0 1d5 1", ETHD_E_SYNTAX, 1, "1d5"},
+    {"circle 0 1\x02 1", ETHD_E_SYNTAX, 1, "1?"},
+    {"circle 0\b0 1", ETHD_E_SYNTAX, 1, "0?0"},
+    {"circle\001 0 0 1", ETHD_E_UNKNOWN, 1, "circle?"},
     {"circle 0 \"1\" 1", ETHD_E_SYNTAX, 1, "\"1\""},
     {"circle 0 0 1 material", ETHD_E_SYNTAX, 1, "material"},
     {"circle 0 x 1\ncircle 0 0 1", ETHD_E_SYNTAX, 1, "x"},
@@ -264,6 +277,12 @@ TEST(test_numbers_of_refusals) {
   text = "polygon 1 2 3 4";
   ck_assert_int_eq(ethd_scene_parse(text, strlen(text), &s, &error), ETHD_E_SYNTAX);
   ck_assert(error.found == 4 && error.min == 6 && isinf(error.max));
+  text = "halfplane 1 1 0";
+  ck_assert_int_eq(ethd_scene_parse(text, strlen(text), &s, &error), ETHD_E_RANGE);
+  ck_assert(error.found == sqrt(2) && error.min == 1 - 1e-6 && error.max == 1 + 1e-6);
+  text = "material soft " KEYS_15 "p=1 q=1";
+  ck_assert_int_eq(ethd_scene_parse(text, strlen(text), &s, &error), ETHD_E_FULL);
+  ck_assert(error.found == ETHD_PARAMS_MAX + 1 && error.min == 0 && error.max == ETHD_PARAMS_MAX);
   text = "blob";
   ck_assert_int_eq(ethd_scene_parse(text, strlen(text), &s, &error), ETHD_E_UNKNOWN);
   ck_assert(isnan(error.found) && isnan(error.min) && isnan(error.max));
@@ -293,6 +312,7 @@ TEST(test_limits) {
   ck_assert_int_eq(ethd_scene_parse(text, n, &s, &error), ETHD_E_FULL);
   ck_assert_int_eq(error.line, ETHD_MATERIALS_MAX + 1);
   ck_assert_str_eq(error.name, "m32");
+  ck_assert(error.found == ETHD_MATERIALS_MAX + 1 && error.min == 0 && error.max == ETHD_MATERIALS_MAX);
   snprintf(text, sizeof text, "material %s %sp=1\ncircle 0 0 1 material=%s", NAME_31, KEYS_15, NAME_31);
   s = parse(text);
   ck_assert_uint_eq(ethd_scene_material(s, 0)->count, ETHD_PARAMS_MAX);

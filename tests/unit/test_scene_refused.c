@@ -118,6 +118,10 @@ TEST(test_materials_of_structs) {
   ethd_scene_destroy(scene);
   def.material_count++;
   ck_assert_int_eq(ethd_scene_create(&def, &scene, &error), ETHD_E_FULL);
+  ck_assert(error.found == ETHD_MATERIALS_MAX + 1 && error.min == 0 && error.max == ETHD_MATERIALS_MAX);
+  def.material_count = 1;
+  ck_assert_int_eq(ethd_scene_create(&def, &scene, &error), ETHD_E_RANGE); /* the circle's is the second */
+  ck_assert(error.found == 1 && error.min == -1 && error.max == 0);
   def.material_count = 3;
   m[2].name[0] = 'A';
   ck_assert_int_eq(ethd_scene_create(&def, &scene, &error), ETHD_E_DUPLICATE);

@@ -213,6 +213,7 @@ TEST(test_not_made) {
   ethd_error error;
   memset(&s, 0, sizeof s);
   ck_assert_int_eq(ethd_setup_set(&s, "ring.radius", 0.01, &error), ETHD_E_ARGUMENT);
+  ck_assert_msg(strstr(error.name, "ethd_setup_default") != NULL, "%s", error.name);
   ck_assert(s.ring_radius == 0 && isnan(ethd_setup_get(&s, "ring.radius")));
   ck_assert_int_eq(ethd_setup_set(NULL, "ring.radius", 0.01, NULL), ETHD_E_ARGUMENT);
 }

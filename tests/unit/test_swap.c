@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "control/controller.h"
-#include "ethd/sim.h"
 #include "unit/draw.h"
 #include "unit/rig.h"
 
@@ -217,49 +216,4 @@ TEST(test_nothing_new) {
   }
   rig_close(&r);
   rig_close(&stays);
-}
-
-/* ---- in closed loop ---- */
-
-/* Simulated taps on plant n, another law every few ticks: the hand feels no bump. */
-TEST(test_simulated_taps) {
-  char message[ETHD_MESSAGE_MAX];
-  ethd_sim_def def = {
-      .arm = {ETHD_ARM_PARALLEL, 0.25, 0.25}, .ring_radius = 0.012, .period = 0.001, .step = 50e-6, .tolerance = 1e-10};
-  ethd_sim *sim;
-  ethd_sim_tap how;
-  rig r;
-  int inside = 0, swaps = 0;
-  if (ethd_plant_load("apps/config/n.plant", &def.plant, message) != ETHD_OK) ck_abort_msg("%s", message);
-  ck_assert_int_eq(ethd_sim_create(&def, &sim, NULL), ETHD_OK);
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
-  for (uint64_t n = 0; n < 6; n++) {
-    ethd_sim_draw(&def.plant, 1, n, n % 2 ? 0.5 : 0.2, (ethd_vec){0.25, 0.25}, &how);
-    ck_assert_int_eq(ethd_sim_start(sim, &how), ETHD_OK);
-    ethd_control_reset(r.control);
-    for (int tick = 0; tick < 800; tick++) {
-      ethd_sense s;
-      ethd_command told;
-      uint64_t k = n * 1000 + (uint64_t)tick;
-      int swap = draw(k, 0, 1) < 0.2;
-      ethd_sim_read(sim, &s);
-      if (swap) {
-        ethd_setup_transition(&r.setup, strategies[draw_bits(k) % 3]);
-        rig_post(&r);
-        ck_assert_int_eq(ethd_control_rehearse(r.control, &s, &told), ETHD_OK);
-      }
-      ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
-      if (swap) {
-        ck_assert_mem_eq(told.torque, r.trace.tau, sizeof told.torque);
-        ck_assert_int_eq(rig_poll(&r).kind, ETHD_EVENT_TAKEN);
-      }
-      swaps += swap;
-      inside += r.trace.d_re < 0;
-      ethd_sim_write(sim, &r.command);
-    }
-  }
-  ck_assert_msg(inside > 500 && swaps > 800, "%d ticks inside, %d swaps", inside, swaps);
-  ethd_sim_destroy(sim);
-  rig_close(&r);
 }

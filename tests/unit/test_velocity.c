@@ -296,6 +296,7 @@ TEST(test_refusals) {
       {ETHD_VELOCITY_LOWPASS, 0.5, 0, T, ETHD_E_RANGE, "cutoff"},
       {ETHD_VELOCITY_LOWPASS, NAN, 0, T, ETHD_E_NOT_FINITE, "cutoff"},
       {ETHD_VELOCITY_LOWPASS, 130, 0, 0, ETHD_E_RANGE, "period"},
+      {ETHD_VELOCITY_LOWPASS, 130, 0, 1.05, ETHD_E_RANGE, "period"},
       {ETHD_VELOCITY_LOWPASS, 130, 0, NAN, ETHD_E_NOT_FINITE, "period"},
       {ETHD_VELOCITY_LSQ, 33, 0, T, ETHD_E_RANGE, "window"},
       {ETHD_VELOCITY_LSQ, 1, 0, T, ETHD_E_RANGE, "window"},
@@ -315,6 +316,8 @@ TEST(test_refusals) {
     ck_assert_int_eq(error.status, bad[i].status);
     ck_assert_str_eq(error.name, bad[i].name);
     if (strcmp(error.name, "window") == 0) ck_assert(error.found == bad[i].p0 && error.min == 2 && error.max == 32);
+    if (bad[i].status == ETHD_E_RANGE && strcmp(error.name, "period") == 0)
+      ck_assert(error.min == 1e-6 && error.max == 1);
     ck_assert(v.period == 42);
     ck_assert_int_eq(ethd_velocity_prepare((ethd_velocity_method)bad[i].method, p, bad[i].period, &v, NULL), status);
   }
