@@ -34,6 +34,8 @@ static const char doc[] =
     "participant; numbered answers or q1_answers = text), consent and "
     "instruction (\"[pages]\"), and whatever else the screen says in your language (\"[words]\": --words prints the "
     "phrases by their names).\n\n"
+    "With \"markers = HOST:PORT\" in [study] a session sends a line of text by UDP as each block and trial begins and "
+    "ends, at each trial's contact, and as a tap is accepted or rejected.\n\n"
     "A participant who withdraws or is excluded stays on record with the reason, in participants.csv, and leaves the "
     "analysis, as one who aborted does. A valid tap that the experimenter rejects, at the screen or later by --reject, "
     "doesn't count either; another one is then due. taps.csv says which taps were accepted and rejected, events.csv "

@@ -54,7 +54,7 @@ static ethd_status open_recorder(ethd__session *s, const ethd__session_options *
   ethd_status status = ETHD_OK;
   r->telemetry = -1;
   r->keeps = o->keeps;
-  if (o->telemetry) status = ethd__telemetry_open(o->telemetry, o->group, &r->telemetry, message);
+  if (o->telemetry) status = ethd__telemetry_open("--telemetry", o->telemetry, o->group, &r->telemetry, message);
   if (!status && (o->snapshot || o->record)) status = open_snapshot(s, o, message);
   if (status || !o->record) return status;
   status = ethd_recording_create(o->record, s->config, o->replace, &r->recording, message);

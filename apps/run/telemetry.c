@@ -58,28 +58,29 @@ static int connected(const struct addrinfo *a, bool group) {
   return -1;
 }
 
-ethd_status ethd__telemetry_open(const char *address, bool group, int *out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__telemetry_open(const char *what, const char *address, bool group, int *out,
+                                 char message[ETHD_MESSAGE_MAX]) {
   char host[HOST_MAX], quote[ETHD_QUOTE_MAX];
   const char *port;
   struct addrinfo hints = {.ai_socktype = SOCK_DGRAM}, *found;
   *out = -1;
   if (!split(address, host, &port))
-    return ethd__say(message, ETHD_E_SYNTAX, "--telemetry: found %s, HOST:PORT is allowed",
+    return ethd__say(message, ETHD_E_SYNTAX, "%s: found %s, HOST:PORT is allowed", what,
                      ethd__quote(address, strlen(address), quote));
   if (!is_port(port))
-    return ethd__say(message, ETHD_E_RANGE, "--telemetry: found %s; a port from 1 to 65535 is allowed",
+    return ethd__say(message, ETHD_E_RANGE, "%s: found %s; a port from 1 to 65535 is allowed", what,
                      ethd__quote(address, strlen(address), quote));
   int failure = getaddrinfo(host, port, &hints, &found);
-  if (failure) return ethd__say(message, ETHD_E_UNKNOWN, "--telemetry: %s: %s", host, gai_strerror(failure));
+  if (failure) return ethd__say(message, ETHD_E_UNKNOWN, "%s: %s: %s", what, host, gai_strerror(failure));
   bool many = is_group(found);
   *out = many && !group ? -1 : connected(found, group);
   int reason = errno;
   freeaddrinfo(found);
   if (*out >= 0) return ETHD_OK;
   if (many || reason == EACCES)
-    return ethd__say(message, ETHD_E_ARGUMENT,
-                     "--telemetry: %.200s: many may listen; --telemetry-group says that they shall", address);
-  return ethd__say(message, ETHD_E_FILE, "--telemetry: %s: %s", address, strerror(reason));
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: %.200s: many may listen; --telemetry-group says that they shall",
+                     what, address);
+  return ethd__say(message, ETHD_E_FILE, "%s: %s: %s", what, address, strerror(reason));
 }
 
 /* ---- datagram ---- */

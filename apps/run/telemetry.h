@@ -7,9 +7,9 @@
 #include "ethd/config.h"
 #include "ethd/loop.h"
 
-/* Opens a socket, *out, to HOST:PORT, or [HOST]:PORT for addresses with colons. Refuses a multicast or broadcast
+/* Opens a socket, *out, to HOST:PORT, or [HOST]:PORT for addresses with colons. `what` names it in messages. Refuses a multicast or broadcast
    address unless `group` is set; the refusal names the option --telemetry-group. */
-ETHD_MUST_CHECK ethd_status ethd__telemetry_open(const char *address, bool group, int *out,
+ETHD_MUST_CHECK ethd_status ethd__telemetry_open(const char *what, const char *address, bool group, int *out,
                                                  char message[ETHD_MESSAGE_MAX]);
 
 /* Sends a datagram without waiting; one that can't leave at once is dropped. */

@@ -28,6 +28,9 @@ static void check_study(const ethd__study_options *o, const ethd__protocol *p, c
   ethd_status status = ethd__desk_open(p, loaded, o->finger, &desk, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   ethd__desk_close(&desk);
+  ethd__markers markers;
+  check(ethd__markers_open(p, &markers, message), message);
+  ethd__markers_close(&markers);
   bool people = p->hands == ETHD_HANDS_PEOPLE;
   if (people && (o->simulate || o->finger))
     ethd__fail(ETHD_EXIT_INPUT, "%s: hand.source: people have hands of their own; no --simulate, no --finger", p->path);

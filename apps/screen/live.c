@@ -21,7 +21,9 @@ static void await(int64_t instant) {
 static void show(ethd__live *l) {
   const ethd__tap_rows *rows = &l->stage->rows;
   const ethd_truth *truth = &rows->truth[rows->count - 1];
+  if (isnan(l->touch) && truth->pad > 0) l->touch = truth->t;
   const ethd__glimpse g = {.t = truth->t,
+                           .touch = l->touch,
                            .finger = {truth->finger[0], truth->finger[1]},
                            .ring = {truth->ring[0], truth->ring[1]},
                            .state = (int32_t)rows->trace[rows->count - 1].state};
@@ -91,6 +93,7 @@ ethd_status ethd__live_start(ethd__live *l, ethd__stage *stage, const ethd__spee
   const ethd_plant *plant = &stage->study->plant;
   memset(l, 0, sizeof *l);
   l->stage = stage;
+  l->touch = NAN;
   ethd_status status = ethd__hand_create(&l->hand, x, seconds);
   if (!status) status = open_cells(l);
   if (!status) {

@@ -16,6 +16,7 @@ typedef struct ethd__glimpse {
   ethd_vec finger, ring;
   int32_t state; /* of the controller, ETHD_TRANSPARENT .. */
   int32_t reserved;
+  double touch; /* s of the tap: the finger's first touch, NaN before it */
 } ethd__glimpse;
 
 /* Where the pointer came to, and at which instant. */
@@ -30,6 +31,7 @@ typedef struct ethd__live {
   ethd_sim_tap tap;
   ethd__hand hand;
   ethd_cell *pointer, *glimpse; /* ethd__led in, ethd__glimpse out */
+  double touch;                 /* of the glimpse */
   int64_t began_ns;             /* the clock's time at the tap's 0 */
   pthread_t thread;
   bool started;

@@ -21,6 +21,7 @@ typedef struct ethd__screen_place {
   ethd__screen screen;
   ethd__console console;
   ethd__sitting sitting;
+  ethd__markers markers;
   ethd__source device; /* the one with people's fingers; without it `self` is NULL */
   bool has_screen;
 } ethd__screen_place;

@@ -1,4 +1,6 @@
 /* A tap on the screen: the pointer's on the simulated device, or a device's own. */
+#include <math.h>
+
 #include "clock.h"
 #include "screen/draw.h"
 #include "text/error_text.h"
@@ -44,13 +46,23 @@ void ethd__screen_moved(void *self, int64_t ns) {
   if (s->live) ethd__live_lead(s->live, ns, ethd__draw_finger(s));
 }
 
+/* Marks the first touch once it is seen. */
+static void mark_touch(const ethd__screen *s, const ethd__turn *turn, const ethd__live *live, const ethd__glimpse *g,
+                       bool *marked) {
+  if (*marked || isnan(g->touch)) return;
+  *marked = true;
+  ethd__markers_send(s->desk->markers, "contact", turn, live->began_ns + llrint(1e9 * g->touch), "-");
+}
+
 /* False: there was no tap. */
-static bool follow(ethd__screen *s, ethd__live *live, ethd_vec from) {
-  ethd__glimpse g = {.finger = from};
-  bool goes = true;
+static bool follow(ethd__screen *s, const ethd__turn *turn, ethd__live *live, ethd_vec from) {
+  ethd__glimpse g = {.finger = from, .touch = NAN};
+  bool goes = true, marked = false;
   s->live = live;
+  ethd__markers_send(s->desk->markers, "trial-begin", turn, live->began_ns, "-");
   ethd__live_lead(live, ethd__clock_now(), ethd__draw_finger(s));
   while (goes && ethd__live_look(live, &g)) {
+    mark_touch(s, turn, live, &g, &marked);
     goes = goes_further(s, g.t);
     if (goes) show(s, g.t, g.finger);
   }
@@ -68,7 +80,7 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
   begin_tap(s, from);
   status = ethd__live_start(&live, &s->desk->stage, out->speed, out->tap, from, SECONDS_MAX);
   if (!status) {
-    done = follow(s, &live, from);
+    done = follow(s, turn, &live, from);
     status = ethd__live_join(&live);
   }
   if (status) return ethd__say(message, status, "the tap: %s", ethd_status_sentence(status));

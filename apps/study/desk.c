@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "clock.h"
 #include "study/movements.h"
 #include "study/people.h"
 #include "text/error_text.h"
@@ -113,10 +114,22 @@ static void tell_law(ethd__desk *desk, const ethd__law_fault *fault) {
           ethd__law_fault_text(fault, text));
 }
 
+/* A simulated tap is over in less time than it has ticks. */
+static void mark_touch(const ethd__desk *desk, const ethd__turn *turn, int64_t begin_ns) {
+  const ethd__tap_rows *rows = &desk->stage.rows;
+  size_t i = 0;
+  while (i < rows->count && !(rows->truth[i].pad > 0)) i++;
+  if (i < rows->count)
+    ethd__markers_send(desk->markers, "contact", turn, begin_ns + llrint(1e9 * rows->truth[i].t), "-");
+}
+
 static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]) {
   ethd__desk *desk = self;
+  int64_t begin_ns = ethd__clock_now();
   ethd_status status = ethd__desk_prepare(desk, turn, out, message);
+  ethd__markers_send(desk->markers, "trial-begin", turn, begin_ns, "-");
   if (!status) status = ethd__stage_run(&desk->stage, out->speed, out->tap, &out->result, message);
+  if (!status) mark_touch(desk, turn, begin_ns);
   if (!status) tell_law(desk, &out->result.law_fault);
   return status;
 }

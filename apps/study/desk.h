@@ -2,13 +2,14 @@
 #ifndef ETHD__APPS_STUDY_DESK_H
 #define ETHD__APPS_STUDY_DESK_H
 
-#include "study/source.h"
+#include "study/markers.h"
 #include "tap/load.h"
 
 typedef struct ethd__desk {
   const ethd__protocol *protocol;
   const ethd__loaded *loaded;
-  char **movements; /* files, by name */
+  ethd__markers *markers; /* NULL: none */
+  char **movements;       /* files, by name */
   size_t movement_count;
   ethd__study study; /* of the present person */
   ethd__speed speeds[ETHD_STUDY_WORDS];

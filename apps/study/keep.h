@@ -1,4 +1,5 @@
-/* A tap's own folder, which is made under another name and gets its final one once it is on the disk. All [main]. */
+/* A tap's row in the store, and its own folder, which is made under another name and gets its final one once it is on the
+   disk. All [main]. */
 #ifndef ETHD__APPS_STUDY_KEEP_H
 #define ETHD__APPS_STUDY_KEEP_H
 
@@ -14,5 +15,9 @@ ETHD_MUST_CHECK ethd_status ethd__tap_keep(const char *folder, const char *name,
    Refuses a folder with more of these, because then the store is an old one. */
 ETHD_MUST_CHECK ethd_status ethd__tap_remove_torn(const ethd__folder *folder, ethd__study_store *store,
                                                   char message[ETHD_MESSAGE_MAX]);
+
+/* Puts a tap; `point` of the grid, 0 without one. */
+ETHD_MUST_CHECK ethd_status ethd__tap_put(ethd__study_store *store, size_t point, const ethd__taken *taken,
+                                          char message[ETHD_MESSAGE_MAX]);
 
 #endif

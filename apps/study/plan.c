@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "study/columns.h"
-#include "study/row.h"
 #include "text/text.h"
 
 #define FARTHEST 4 /* times the cells, up to which another number of participants is looked for */

@@ -2,8 +2,9 @@
 #ifndef ETHD__APPS_STUDY_PROGRESS_H
 #define ETHD__APPS_STUDY_PROGRESS_H
 
+#include "store/store.h"
 #include "study/folder.h"
-#include "study/row.h"
+#include "study/source.h"
 
 #define ETHD_STUDY_SESSION_PEOPLE 10000u
 

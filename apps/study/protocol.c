@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -164,7 +165,8 @@ ethd_status ethd__protocol_load(const char *path, ethd__protocol *out, char mess
 }
 
 void ethd__protocol_free(ethd__protocol *p) {
-  char *own[] = {p->path, p->text, p->folder, p->name, p->config, p->plant, p->scene, p->motion, p->exclusions};
+  char *own[] = {p->path,  p->text,  p->folder, p->name,       p->config,
+                 p->plant, p->scene, p->motion, p->exclusions, p->markers};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) free(own[i]);
   ethd__word_list_free(&p->strategies);
   ethd__word_list_free(&p->speeds);
@@ -175,6 +177,12 @@ void ethd__protocol_free(ethd__protocol *p) {
     ethd__word_list_free(&p->axes[i].values);
   }
   *p = (ethd__protocol){0};
+}
+
+void ethd__participant_id(const ethd__protocol *protocol, uint32_t person, char out[ETHD_STUDY_ID_MAX]) {
+  int digits = 2;
+  for (uint32_t n = protocol->participants; n > 99; n /= 10) digits++;
+  snprintf(out, ETHD_STUDY_ID_MAX, "P%0*" PRIu32, digits, person + 1);
 }
 
 /* ---- the grid ---- */

@@ -13,6 +13,7 @@
      survey = off      on                 graze = 0.02            s of touch that a tap needs at least
      record = all      none               lift = 0.005            m off the wall and back: a double tap
      rest = 3          blocks, 0: never   slack = 0.0004          m: so near to the ring people's fingers touch it
+     markers = HOST:PORT                  see markers.h
 
      [device]                             [grid]                  --simulate: every combination
      config = q.ini                       contact.k_e = 1000,2500
@@ -49,6 +50,7 @@
 #define ETHD_STUDY_GAINS 6 /* keys of a grid */
 #define ETHD_STUDY_PEOPLE 1000000u
 #define ETHD_STUDY_POINTS 100000u /* of a grid */
+#define ETHD_STUDY_ID_MAX 16
 #define ETHD_STUDY_TEXT_MAX ((size_t)1 << 20)
 
 typedef enum ethd__order { ETHD_ORDER_PAPER, ETHD_ORDER_RANDOM, ETHD_ORDER_LATIN } ethd__order;
@@ -73,7 +75,7 @@ typedef struct ethd__protocol {
   uint64_t seed;
   uint32_t participants, training, taps, attempts, rest;
   ethd__word_list strategies, speeds, primary;
-  char *exclusions; /* NULL: not given */
+  char *exclusions, *markers; /* NULL: not given */
   ethd__order order;
   ethd__hands hands;
   bool survey, record;
@@ -94,6 +96,9 @@ ETHD_MUST_CHECK ethd_status ethd__protocol_parse(const char *text, size_t length
                                                  ethd__protocol *out, char message[ETHD_MESSAGE_MAX]);
 
 void ethd__protocol_free(ethd__protocol *protocol);
+
+/* Writes P01, P02, .. with as many digits as the number of participants needs, two at least. */
+void ethd__participant_id(const ethd__protocol *protocol, uint32_t person, char out[ETHD_STUDY_ID_MAX]);
 
 /* Returns the number of combinations of the grid, 1 without one. */
 size_t ethd__protocol_points(const ethd__protocol *protocol);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "clock.h"
 #include "ethd/ethd.h"
 #include "study/keep.h"
 #include "study/sums.h"
@@ -19,6 +20,12 @@ static ethd__about about(const ethd__turn *turn) { return (ethd__about){turn->pe
 
 static const ethd__about nothing;
 
+/* Sends a marker at the loop's present time. */
+static void mark(const ethd__sitting *s, const char *event, const ethd__turn *turn, const char *reason) {
+  const ethd__source *source = &s->source;
+  ethd__markers_send(s->markers, event, turn, source->now ? source->now(source->self) : ethd__clock_now(), reason);
+}
+
 /* Makes the tap, keeps its ticks, and then puts its figures into the store. */
 static ethd_status have_tap(ethd__sitting *s, const char *id, const ethd__turn *turn, ethd__taken *taken,
                             char *message) {
@@ -26,6 +33,8 @@ static ethd_status have_tap(ethd__sitting *s, const char *id, const ethd__turn *
   char name[64], words[128], begun[ETHD_UTC_MAX];
   ethd__sitting_now(s, begun);
   ethd_status status = s->source.tap(s->source.self, turn, taken, message);
+  if (status == ETHD_OK || status == ETHD_STATUS_EMPTY)
+    mark(s, "trial-end", turn, status ? "none" : ethd__reason_words[taken->result.metrics.reason]);
   if (status) return status;
   memcpy(taken->utc, begun, sizeof begun);
   snprintf(name, sizeof name, "%s-%02zu-%03" PRIu32, id, turn->number, turn->attempt);
@@ -90,8 +99,10 @@ static ethd_status check(ethd__sitting *s, const ethd__turn *turn, const char *e
   s->checked = strcmp(event, "uncheck") ? event : NULL;
   s->again |= tap->number != turn->number;
   ethd_status status = ethd__sitting_event(s, of, event, why, message);
-  if (!status) tell(s);
-  return status;
+  if (status) return status;
+  mark(s, event, tap, "-");
+  tell(s);
+  return ETHD_OK;
 }
 
 /* The participant who was ended last will tap again after the others. */
@@ -151,6 +162,9 @@ static ethd_status run_block(ethd__sitting *s, const char *id, ethd__turn *turn,
   ethd_status status = ETHD_OK;
   bool rest = p->rest && turn->number > 1 && (turn->number - 1) % p->rest == 0, left = !block_due(s, turn);
   if (!left) s->front.block(s->front.self, id, turn, rest);
+  bool begun = !left;
+  turn->attempt = 0;
+  if (begun) mark(s, "block-begin", turn, "-");
   while (!status && !*stop && !left && s->who.in) {
     bool over = !block_due(s, turn), go = false;
     turn->attempt = s->who.at[turn->number].taken + 1;
@@ -159,6 +173,8 @@ static ethd_status run_block(ethd__sitting *s, const char *id, ethd__turn *turn,
     if (!status && go && !over) status = run_tap(s, id, turn, message);
     left = over && go;
   }
+  turn->attempt = s->who.at[turn->number].taken;
+  if (begun) mark(s, "block-end", turn, "-");
   return !status && !*stop && ethd__survey_due(s, turn) ? ethd__survey_run(s, id, turn, stop, message) : status;
 }
 

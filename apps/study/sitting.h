@@ -3,6 +3,7 @@
 #define ETHD__APPS_STUDY_SITTING_H
 
 #include "study/front.h"
+#include "study/markers.h"
 #include "study/progress.h"
 
 typedef struct ethd__sitting {
@@ -10,6 +11,7 @@ typedef struct ethd__sitting {
   ethd__study_store store;
   ethd__participant who; /* whose turn it is */
   ethd__source source;
+  ethd__markers *markers; /* NULL: none */
   ethd__front front;
   uint32_t first, last; /* participants who are asked for */
   uint64_t taps;        /* done in this sitting */

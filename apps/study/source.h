@@ -53,6 +53,8 @@ typedef struct ethd__source {
   ethd_status (*acknowledge)(void *self, char message[ETHD_MESSAGE_MAX]);
   /* The finger's centre as the device has it, R_0; NULL: the screen's pointer is the finger. */
   ethd_vec (*finger)(void *self);
+  /* Returns the loop's present time, ns; NULL: the clock's. */
+  int64_t (*now)(void *self);
 } ethd__source;
 
 /* An observer of a tap. `look` is called several times a frame while the tap runs. False: the tap must end. */

@@ -30,6 +30,8 @@ static void begin(ethd__station *s, const ethd_loop_row *row) {
   s->approach = (ethd__approach){0};
   s->last = (size_t)(SECONDS / s->rule.period);
   s->begin_ns = row->trace.sense.time_ns;
+  s->touched = false;
+  ethd__markers_send(s->desk->markers, "trial-begin", s->turn, s->begin_ns, "-");
   memcpy(s->stage.heat, row->heat, sizeof row->heat);
 }
 
@@ -44,6 +46,10 @@ static void add(ethd__station *s, const ethd_loop_row *row) {
   rows->truth[rows->count] = ethd__seen(&row->trace, &s->stage.setup, s->slack, s->begin_ns);
   if (ethd__approach_step(&s->approach, &s->rule, &rows->trace[rows->count], &rows->truth[rows->count]))
     s->last = rows->count + (size_t)floor(ETHD_TAP_AFTER / s->rule.period + 0.5);
+  if (!s->touched && rows->truth[rows->count].pad > 0) {
+    s->touched = true;
+    ethd__markers_send(s->desk->markers, "contact", s->turn, row->trace.sense.time_ns, "-");
+  }
   if (rows->count++ >= s->last || row->trace.fault) s->phase = ETHD_PHASE_OVER;
 }
 
@@ -103,6 +109,7 @@ static ethd_status take_strategy(ethd__station *s, const char *law, char *messag
 static void make_ready(ethd__station *s, const ethd__taken *taken) {
   s->stage.study = &s->desk->study;
   s->stage.law = taken->stage->law;
+  s->turn = &taken->turn;
   s->stage.setup = s->session.setup;
   s->rule = ethd__stage_rule(&s->stage, taken->speed, s->stage.setup.finger_radius);
   s->rule.carried = true;
@@ -188,13 +195,16 @@ static ethd_vec finger(void *self) {
   return (ethd_vec){row.trace.xf[0], row.trace.xf[1]};
 }
 
+static int64_t now(void *self) { return latest(self).trace.sense.time_ns; }
+
 ethd__source ethd__station_source(ethd__station *s) {
   return (ethd__source){.self = s,
                         .hand = ETHD_HAND_DEVICE,
                         .tap = tap,
                         .stopped = stopped,
                         .acknowledge = acknowledge,
-                        .finger = finger};
+                        .finger = finger,
+                        .now = now};
 }
 
 /* ---- opening, closing ---- */

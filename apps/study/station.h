@@ -26,6 +26,8 @@ typedef struct ethd__station {
   pthread_mutex_t lock; /* for what follows, of the tap that is being taken */
   ethd__phase phase;
   ethd__rule rule;
+  const ethd__turn *turn;
+  bool touched;
   ethd__approach approach;
   size_t last; /* the last row, as far as is known */
   int64_t begin_ns;

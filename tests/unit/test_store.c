@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "store/schema.h"
+#include "study/keep.h"
 #include "study/tables.h"
 #include "text/file.h"
 #include "text/text.h"

@@ -6,7 +6,6 @@
 
 #include "study/order.h"
 #include "study/people.h"
-#include "study/row.h"
 #include "text/sha256.h"
 #include "unit/mutate.h"
 #include "unit/suite.h"
