@@ -26,7 +26,7 @@ static const char doc[] =
     "transmission but no friction, which stops small swings "
     "only. Where a loop is unstable without it, a line gives the speed up to which friction stops a swing, and the "
     "speed that one encoder count gives the motors; if the latter is larger, the ring chatters for ever, as the "
-    "simulated device does. A plugin's law whose gains can't be told from its parameters isn't judged, which the last "
+    "simulated device does. A plugin's law that doesn't name its gains isn't judged, which the last "
     "lines say.\n\n"
     "--laws and --drivers list what a configuration can name instead, with each parameter's unit, range and default. "
     "The first law or method of each kind is the default, except that the default transition is offset.\n\n"

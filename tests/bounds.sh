@@ -75,8 +75,20 @@ silent "$folder/out" 'compensation = stamp'
 silent "$folder/a" 'not judged'
 printf '[plugins]\nfile = %s\n[transition]\nlaw = brake-ahead\n' "$BUILD/tests/plugins/mylaw.so" >"$folder/foreign.ini"
 "$check" "$folder/foreign.ini" >"$folder/out"
-says "$folder/out" '^not judged: braking, because the gains of the law brake-ahead '
+says "$folder/out" '^not judged: braking, because the law brake-ahead doesn.t name its gains'
 tail -n 1 "$folder/out" | grep -q '^not judged' || fail "it isn't the last word"
+
+# One that names its gains is judged, whatever they are called: here by the bound of the paper's own braking.
+sed 's/\.step = step};/.step = step, .gains = \&(const ethd_gains){NULL, "brake"}};/' apps/examples/law.c >"$folder/own.c"
+"${CC:-cc}" -shared -fPIC -Iinclude "$folder/own.c" -o "$folder/own.so" || fail "a law with gains doesn't compile"
+for law in own.so:mine:brake none:offset:b_d; do
+  key=${law##*:} name=${law#*:} file=${law%%:*}
+  { [ $file = none ] || printf '[plugins]\nfile = %s\n' $file; printf '[transition]\nlaw = %s\n%s = 300\n[device]\nplant = n\n' "${name%:*}" $key; } >"$folder/own.ini"
+  "$check" "$folder/own.ini" >"$folder/$key.out"
+  silent "$folder/$key.out" 'not judged'
+  sed -n "s/transition\.$key */gain /p" "$folder/$key.out" | grep 'gain.*300 .*EXCEEDED' >"$folder/$key.rows"
+done
+[ -s "$folder/brake.rows" ] && cmp -s "$folder/brake.rows" "$folder/b_d.rows" || fail "by another name: $(cat "$folder/brake.rows" "$folder/b_d.rows")"
 
 # A torque limit of the configuration narrows the device's.
 printf '[limits]\ntorque = 0.5\n' >"$folder/narrow.ini"

@@ -54,7 +54,7 @@ static ethd_status push(const double *p, void *state, double gap, double speed, 
 static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "app", .brief = "app", .start = start,
                                    .read = read_it, .write = write_it, .units = units, .service = service, .safe = safe};
 static const ethd_param params[] = {{"k", "N/m", 0, 1e4, 100, "stiffness"}};
-static const ethd_contact_law law = {{sizeof law, ETHD_ABI, ETHD_CONTACT, 8, "app", "app", params, 1, NULL, NULL}, push};
+static const ethd_contact_law law = {.law = {sizeof law, ETHD_ABI, ETHD_CONTACT, 8, "app", "app", params, 1, NULL, NULL}, .step = push};
 
 int main(void) {
   const char wall[] = "halfplane -1 0 -0.5";

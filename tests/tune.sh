@@ -109,7 +109,7 @@ kill -TERM $search
 wait $search
 [ $? = 1 ] && grep -q 'stopped; nothing is written' err && [ ! -e half.ini ] || fail "a search that was ended: $(cat err)"
 printf '[plugins]\nfile = %s\n[transition]\nlaw = brake-ahead\n' "$BUILD/tests/plugins/mylaw.so" >foreign.ini
-refuse 2 "gains of the law brake-ahead can't be told" --plant n --config foreign.ini
+refuse 2 "the law brake-ahead doesn't name its gains" --plant n --config foreign.ini
 cp one.ini own.ini
 refuse 2 'only read' --config own.ini --out own.ini
 exit $failed

@@ -9,11 +9,12 @@
 /* These conditions are sufficient, not necessary, so no bound is exceeded where they fail. */
 int ethd__report_passivity(const ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
-  double K = ethd_setup_get(setup, "contact.k_e"), B = ethd_setup_get(setup, "contact.b_e");
+  ethd__bounds_gains wall;
+  if (!ethd__bounds_gains_of(setup, ETHD_LOOP_WALL, &wall) || !*wall.stiffness_key) return 0;
+  const double K = wall.stiffness, B = wall.damping;
   double T = setup->period, b = s->device.loop.viscous, fc = s->device.loop.friction;
   double count = s->device.loop.count * fmax(setup->arm.link1, setup->arm.link2);
-  if (isnan(K)) return 0;
-  ethd__sampled_loop loop = {.period = T, .stiffness = K, .damping = isnan(B) ? 0 : B};
+  ethd__sampled_loop loop = {.period = T, .stiffness = K, .damping = B};
   double needed = ethd__sampled_passive_friction(&loop);
   printf("\npassivity    sufficient for any hand, not necessary: a stable wall may fail it\n");
   printf("  Colgate and Schenkel     b > K_e T/2 + B_e = %.4g Ns/m of friction", needed);
@@ -22,7 +23,8 @@ int ethd__report_passivity(const ethd__subject *s) {
   else if (b > needed)
     printf("; the device has %.4g: passive\n", b);
   else
-    printf("; the device has %.4g: not passive%s\n", b, B > 0 ? " (less contact.b_e counts most)" : "");
+    printf("; the device has %.4g: not passive%s%s%s\n", b, B > 0 ? " (less " : "", B > 0 ? wall.damping_key : "",
+           B > 0 ? " counts most)" : "");
   printf("  Abbott and Okamura       K_e <= min(2 b/T, 2 f_c/Delta)");
   if (isnan(b) || isnan(fc) || isnan(count)) {
     printf("; give --viscous, --friction and --counts\n");

@@ -7,21 +7,16 @@
 
 #define THIN 1.5 /* a margin under this is said to be thin */
 
-/* What a loop's gains are called in the configuration. */
-typedef struct gain_words {
-  const char *stiffness, *damping, *stiffness_unit, *damping_unit;
-} gain_words;
-
-static const gain_words words_of[ETHD_LOOP_KINDS] = {
-    [ETHD_LOOP_TRACKING] = {"tracking.k_t", "tracking.b_t", "Nm/rad", "Nms/rad"},
-    [ETHD_LOOP_WALL] = {"contact.k_e", "contact.b_e", "N/m", "Ns/m"},
-    [ETHD_LOOP_BRAKING] = {NULL, "transition.b_d", NULL, "Ns/m"}};
+static const char *const units_of[ETHD_LOOP_KINDS][2] = {[ETHD_LOOP_TRACKING] = {"Nm/rad", "Nms/rad"},
+                                                         [ETHD_LOOP_WALL] = {"N/m", "Ns/m"},
+                                                         [ETHD_LOOP_BRAKING] = {"", "Ns/m"}};
 
 /* One loop along one axis. */
 typedef struct looked_at {
   const ethd__bounds_device *device;
-  const gain_words *words;
-  char what[48]; /* stands in its first row only */
+  const char *const *units;        /* of stiffness and damping in the configuration */
+  const char *stiffness, *damping; /* their keys */
+  char what[48];                   /* stands in its first row only */
   int axis;
   ethd__sampled_loop loop;
   double stiffness_scale, damping_scale; /* from the ring to the configuration's unit */
@@ -44,10 +39,8 @@ static void print_row(looked_at *l, const char *key, double value, double end, c
 static void print_number(looked_at *l, const ethd__bounds_row *r) {
   double k = l->stiffness_scale, b = l->damping_scale;
   switch (r->number) {
-  case ETHD_LOOP_STIFFNESS:
-    print_row(l, l->words->stiffness, r->value * k, r->end * k, l->words->stiffness_unit, r);
-    return;
-  case ETHD_LOOP_DAMPING: print_row(l, l->words->damping, r->value * b, r->end * b, l->words->damping_unit, r); return;
+  case ETHD_LOOP_STIFFNESS: print_row(l, l->stiffness, r->value * k, r->end * k, l->units[0], r); return;
+  case ETHD_LOOP_DAMPING: print_row(l, l->damping, r->value * b, r->end * b, l->units[1], r); return;
   case ETHD_LOOP_MASS: print_row(l, l->axis ? "mass in y" : "mass in x", r->value, r->end, "kg", r); return;
   case ETHD_LOOP_DELAY:
     print_row(l, isnan(l->device->delay) ? "delay (unknown)" : "delay", 1e3 * r->value, 1e3 * r->end, "ms", r);
@@ -80,11 +73,11 @@ static double most_of(const ethd__bounds_row *rows, int count, ethd__bounds_numb
 static void say_change(const looked_at *l, double most_k, double most_b) {
   const ethd__sampled_loop *loop = &l->loop;
   printf("  to change:           ");
-  if (most_k > 0) printf("%s at most %.4g, or ", l->words->stiffness, most_k * l->stiffness_scale);
+  if (most_k > 0) printf("%s at most %.4g, or ", l->stiffness, most_k * l->stiffness_scale);
   if (loop->damping < most_b)
-    printf("more %s (up to %.4g), or ", l->words->damping, most_b * l->damping_scale);
+    printf("more %s (up to %.4g), or ", l->damping, most_b * l->damping_scale);
   else if (most_b > 0)
-    printf("%s at most %.4g, or ", l->words->damping, most_b * l->damping_scale);
+    printf("%s at most %.4g, or ", l->damping, most_b * l->damping_scale);
   printf("%s%s, a shorter loop.period, more mass\n", loop->delay || loop->late > 0 ? "less delay, " : "",
          quicker(loop->method));
 }
@@ -117,8 +110,8 @@ static int undamped(const looked_at *l) {
   else if (b >= needed)
     printf("the device has %.4g\n", b);
   else
-    printf("the device has %.4g: EXCEEDED\n  to change:           %s at most %.4g, or a damped law\n", b,
-           l->words->stiffness, l->loop.stiffness * l->stiffness_scale * b / needed);
+    printf("the device has %.4g: EXCEEDED\n  to change:           %s at most %.4g, or a damped law\n", b, l->stiffness,
+           l->loop.stiffness * l->stiffness_scale * b / needed);
   return b < needed;
 }
 
@@ -151,13 +144,21 @@ static int report_loop(looked_at *l) {
 static int report_axes(const ethd_setup *setup, const ethd__bounds_device *device, ethd__bounds_kind kind,
                        const char *what) {
   int exceeded = 0;
+  ethd__bounds_gains gains;
+  if (!ethd__bounds_gains_of(setup, kind, &gains)) return 0;
   for (int axis = 0; axis < 2; axis++) {
-    looked_at l = {.device = device, .words = &words_of[kind], .axis = axis, .stiffness_scale = 1, .damping_scale = 1};
+    looked_at l = {.device = device,
+                   .units = units_of[kind],
+                   .stiffness = *gains.stiffness_key ? gains.stiffness_key : "stiffness",
+                   .damping = *gains.damping_key ? gains.damping_key : "damping",
+                   .axis = axis,
+                   .stiffness_scale = 1,
+                   .damping_scale = 1};
     snprintf(l.what, sizeof l.what, "%s", what);
     if (!ethd__bounds_of(setup, device, kind, axis, &l.loop)) continue;
     if (kind == ETHD_LOOP_TRACKING) {
-      l.stiffness_scale = ethd_setup_get(setup, "tracking.k_t") / l.loop.stiffness;
-      l.damping_scale = ethd_setup_get(setup, "tracking.b_t") / l.loop.damping;
+      l.stiffness_scale = gains.stiffness / l.loop.stiffness;
+      l.damping_scale = gains.damping / l.loop.damping;
     }
     exceeded += report_loop(&l);
   }
@@ -195,9 +196,8 @@ void ethd__report_unjudged(const ethd_setup *setup) {
   for (int kind = 0; kind < ETHD_LOOP_KINDS; kind++) {
     const ethd_law *law = ethd__bounds_unjudged(setup, (ethd__bounds_kind)kind);
     if (law)
-      printf(
-          "not judged: %s, because the gains of the law %s can't be told from its parameters; try small ones first\n",
-          ethd__bounds_names[kind], law->id);
+      printf("not judged: %s, because the law %s doesn't name its gains; try small ones first\n",
+             ethd__bounds_names[kind], law->id);
   }
 }
 

@@ -93,14 +93,16 @@ static void say_missing(const ethd__subject *s) {
   printf("  needs");
   if (isnan(f->loop.mass[0]) && isnan(f->loop.mass[1])) printf(" arm.mass_x or arm.mass_y");
   if (isnan(f->force[0]) && isnan(f->force[1])) printf(" --force-limit or limits.torque");
-  if (isnan(s->felt.stiffness[0])) printf(" a tracking law with k_t");
+  if (isnan(s->felt.stiffness[0])) printf(" a tracking law that names its stiffness");
   printf("\n");
 }
 
 int ethd__report_stop(const ethd__subject *s) {
   const ethd__figures *f = &s->device;
   const ethd_setup *setup = &s->config->setup;
-  double b_d = ethd_setup_get(setup, "transition.b_d");
+  ethd__bounds_gains brake = {.damping = 0};
+  (void)!ethd__bounds_gains_of(setup, ETHD_LOOP_BRAKING, &brake);
+  const double b_d = isnan(ethd_setup_get(setup, "transition.v_th")) ? 0 : brake.damping;
   int said = 0, exceeded = 0;
   printf("\nstop         at a wall across each axis, with the motors' force at once%s\n",
          isnan(f->loop.friction) || isnan(f->loop.viscous) ? " (friction unknown, taken as 0)" : "");

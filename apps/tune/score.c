@@ -43,13 +43,16 @@ bool ethd__score_keeps(const ethd__tune_rig *rig, const ethd__tune_point *point)
   0.1 /* times the configuration's value: the lowest damping that is tried where that value doesn't keep the margin */
 
 void ethd__score_widen(const ethd__tune_rig *rig, ethd__tune_space *space) {
-  static const char *const sections[ETHD_LOOP_KINDS] = {"tracking.b", "contact.b", "transition.b"};
   char unsaid[ETHD_MESSAGE_MAX];
   ethd_setup setup;
   const ethd__tune_point own = ethd__space_own(space);
   if (ethd__space_setup(space, &own, &setup, unsaid)) return;
-  for (int kind = 0; kind < ETHD_LOOP_KINDS; kind++)
-    if (!keeps_with_hands(rig, &setup, (ethd__bounds_kind)kind)) ethd__space_lower(space, sections[kind], LOWERED);
+  for (int kind = 0; kind < ETHD_LOOP_KINDS; kind++) {
+    ethd__bounds_gains gains;
+    if (keeps_with_hands(rig, &setup, (ethd__bounds_kind)kind)) continue;
+    if (ethd__bounds_gains_of(&setup, (ethd__bounds_kind)kind, &gains))
+      ethd__space_lower(space, gains.damping_key, LOWERED);
+  }
 }
 
 /* ---- figures of a tap ---- */

@@ -39,7 +39,7 @@ static ethd_status refuse_unjudged(const ethd_setup *setup, char *message) {
     const ethd_law *law = ethd__bounds_unjudged(setup, (ethd__bounds_kind)kind);
     if (law)
       return ethd__say(message, ETHD_E_ARGUMENT,
-                       "%s: the gains of the law %s can't be told from its parameters, so no margin of it can be kept",
+                       "%s: the law %s doesn't name its gains, so no margin of it can be kept",
                        ethd__bounds_names[kind], law->id);
   }
   return ETHD_OK;
@@ -71,9 +71,9 @@ ethd_status ethd__space_open(const ethd_config *config, const char *law, ethd__t
                    config->path ? config->path : "the configuration");
 }
 
-void ethd__space_lower(ethd__tune_space *s, const char *prefix, double share) {
+void ethd__space_lower(ethd__tune_space *s, const char *name, double share) {
   for (size_t i = 0; i < s->count; i++)
-    if (!strncmp(s->keys[i].name, prefix, strlen(prefix))) {
+    if (!strcmp(s->keys[i].name, name)) {
       s->keys[i].low = rounded(s->keys[i].own * share);
       s->keys[i].high = rounded(s->keys[i].own);
     }

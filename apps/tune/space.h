@@ -42,8 +42,8 @@ typedef struct ethd__tune_point {
 ETHD_MUST_CHECK ethd_status ethd__space_open(const ethd_config *config, const char *law, ethd__tune_space *out,
                                              char message[ETHD_MESSAGE_MAX]);
 
-/* Gives the keys whose names begin with `prefix` the range from `share` of their own value to that value. */
-void ethd__space_lower(ethd__tune_space *space, const char *prefix, double share);
+/* Gives a key that the space has the range from `share` of its own value to that value. */
+void ethd__space_lower(ethd__tune_space *space, const char *name, double share);
 
 /* Reads "contact.k_e=500:4000", which sets the range of a key, or "contact.k_e=1000", which holds it; a key that the
    space lacks is added. Refuses what the configuration doesn't take. */

@@ -53,6 +53,13 @@ typedef struct ethd_law {
   void (*reset)(const double *p, void *state) ETHD_RT;
 } ethd_law;
 
+/* Which of a law's parameters are the gains of its loop, by name; NULL: the law has no such gain. Of tracking they are a
+   stiffness and a damping of each joint (Nm/rad, Nms/rad), of a contact law those of the wall (N/m, Ns/m), and of a
+   transition law the damping by which it brakes (Ns/m). ethd-check judges the loop by them. */
+typedef struct ethd_gains {
+  const char *stiffness, *damping;
+} ethd_gains;
+
 /* ---- tracking: the finger's motion relative to the ring, to joint torques ---- */
 
 typedef struct ethd_tracking_in {
@@ -68,6 +75,7 @@ typedef struct ethd_tracking_law {
   ethd_law law;
   /* tau: joint torques before beta, Nm (eq. 2). [rt] */
   ethd_status (*step)(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) ETHD_RT;
+  const ethd_gains *gains; /* NULL, or a struct that ends before it: not known, so the loop isn't judged */
 } ethd_tracking_law;
 
 /* ---- a contact: a local minimum of the distance between the ring's centre and an object ----
@@ -127,6 +135,7 @@ typedef struct ethd_contact_law {
      called in every tick in which the contact counts and its transition law's share is over 0, so not while offset
      brakes; it gets no period, so a law of state counts its calls or does without time. [rt] */
   ethd_status (*step)(const double *p, void *state, double gap, double speed, int entering, double *force) ETHD_RT;
+  const ethd_gains *gains; /* as of tracking */
 } ethd_contact_law;
 
 /* ---- transition: who rules ---- */
@@ -171,6 +180,7 @@ typedef struct ethd_transition_law {
   /* Takes over a live contact at a swap of laws, into a state block that has been reset. NULL: the contact begins anew.
      [rt] */
   void (*adopt)(const double *p, void *state, const ethd_past *past) ETHD_RT;
+  const ethd_gains *gains; /* as of tracking */
 } ethd_transition_law;
 
 /* The smallest size of each kind in ABI 0: up to the end of its last field. */
@@ -183,8 +193,12 @@ typedef struct ethd_transition_law {
   ((law_)->law.size >= offsetof(ethd_transition_law, field) + sizeof((law_)->field) && (law_)->field)
 
 /* Checks ABI, size, kind, state, id, table and entry points of a law; each has a status of its own:
-   ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_STATE, ETHD_E_TABLE, and ETHD_E_ARGUMENT for kind, id, brief and step. [main] */
+   ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_STATE, ETHD_E_TABLE (also for gains that are no parameters), and ETHD_E_ARGUMENT for
+   kind, id, brief and step. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_law_check(const ethd_law *law, ethd_error *error);
+
+/* Returns the gains that a law of any kind names, NULL if it doesn't say. [any] */
+ETHD_API const ethd_gains *ethd_law_gains(const ethd_law *law);
 
 /* ---- built in; there is nothing special about them ---- */
 

@@ -20,4 +20,5 @@ const ethd_contact_law ethd_contact_hunt_crossley = {
     .law = {sizeof(ethd_contact_law), ETHD_ABI, ETHD_CONTACT, 0, "hunt-crossley",
             "spring with damping that grows with depth", params, COUNT, NULL, NULL},
     .step = step,
+    .gains = &(const ethd_gains){"k_e", NULL},
 };

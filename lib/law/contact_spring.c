@@ -16,4 +16,5 @@ const ethd_contact_law ethd_contact_spring = {
     .law = {sizeof(ethd_contact_law), ETHD_ABI, ETHD_CONTACT, 0, "spring", "spring without damping", params, COUNT,
             NULL, NULL},
     .step = step,
+    .gains = &(const ethd_gains){"k_e", NULL},
 };

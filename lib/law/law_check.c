@@ -21,6 +21,23 @@ static bool has_step(const ethd_law *law) {
   return ((const ethd_transition_law *)(const void *)law)->step;
 }
 
+#define GAINS(kind) \
+  (law->size >= offsetof(kind, gains) + sizeof(ethd_gains *) ? ((const kind *)(const void *)law)->gains : NULL)
+
+const ethd_gains *ethd_law_gains(const ethd_law *law) {
+  if (law->kind == ETHD_TRACKING) return GAINS(ethd_tracking_law);
+  return law->kind == ETHD_CONTACT ? GAINS(ethd_contact_law) : GAINS(ethd_transition_law);
+}
+
+static bool gains_are_params(const ethd_law *law) {
+  const ethd_gains *gains = ethd_law_gains(law);
+  for (int i = 0; gains && i < 2; i++) {
+    const char *name = i ? gains->damping : gains->stiffness;
+    if (name && ethd_params_find(law->params, law->param_count, name) < 0) return false;
+  }
+  return true;
+}
+
 /* The ABI is checked first, since nothing after it can be trusted when it differs. */
 ethd_status ethd_law_check(const ethd_law *law, ethd_error *error) {
   if (!law) return ethd__error(error, ETHD_E_ARGUMENT, "law");
@@ -36,6 +53,7 @@ ethd_status ethd_law_check(const ethd_law *law, ethd_error *error) {
     return ethd__refuse(error, ETHD_E_STATE, law->id, (ethd__found){law->state_size, 0, ETHD_STATE_MAX});
   if (!has_step(law)) return ethd__error(error, ETHD_E_ARGUMENT, law->id);
   ethd_status status = ethd_params_check_table(law->params, law->param_count, error);
+  if (!status && !gains_are_params(law)) status = ethd__error(error, ETHD_E_TABLE, "gains");
   if (status < 0) ethd__error_prefix(error, law->id);
   return status;
 }

@@ -39,4 +39,5 @@ const ethd_tracking_law ethd_tracking_pd = {
     .law = {sizeof(ethd_tracking_law), ETHD_ABI, ETHD_TRACKING, sizeof(pd_state), "pd",
             "spring and damper between finger and ring, in joint space", params, COUNT, NULL, NULL},
     .step = step,
+    .gains = &(const ethd_gains){"k_t", "b_t"},
 };

@@ -17,4 +17,5 @@ const ethd_transition_law ethd_transition_abrupt = {
     .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 0, "abrupt", "tracking outside, the wall inside",
             NULL, 0, NULL, NULL},
     .step = step,
+    .gains = &(const ethd_gains){NULL, NULL},
 };

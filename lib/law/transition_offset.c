@@ -76,4 +76,5 @@ const ethd_transition_law ethd_transition_offset = {
             "VO-B: brake, then the wall where the ring stopped", params, ETHD__OFFSET_COUNT, NULL, NULL},
     .step = step,
     .adopt = adopt,
+    .gains = &(const ethd_gains){NULL, "b_d"},
 };

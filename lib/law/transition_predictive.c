@@ -190,4 +190,5 @@ const ethd_transition_law ethd_transition_predictive = {
     .step = step,
     .range = range,
     .adopt = adopt,
+    .gains = &(const ethd_gains){NULL, "b_d"},
 };

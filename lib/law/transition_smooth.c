@@ -18,4 +18,5 @@ const ethd_transition_law ethd_transition_smooth = {
     .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 0, "smooth", "VO-A: tracking fades near the wall",
             params, COUNT, NULL, NULL},
     .step = step,
+    .gains = &(const ethd_gains){NULL, NULL},
 };

@@ -22,6 +22,7 @@ static const ethd_tracking_law counting = {
     .law = {sizeof(ethd_tracking_law), ETHD_ABI, ETHD_TRACKING, 64, "counting-pd", "pd that counts its steps", params,
             3, NULL, NULL},
     .step = step,
+    .gains = &(const ethd_gains){"k_t", "b_t"},
 };
 
 static const ethd_law *const laws[] = {&counting.law};

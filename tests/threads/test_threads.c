@@ -53,8 +53,8 @@ static const ethd_param params[] = {ROW("a"), ROW("b"), ROW("c"), ROW("d"), ROW(
 #define LAW(type, kind) {sizeof(type), ETHD_ABI, kind, 16, "same", "all the same number", params, 6, NULL, NULL}
 static const ethd_transition_law transitions[2] = {{.law = LAW(ethd_transition_law, ETHD_TRANSITION), .step = rule},
                                                    {.law = LAW(ethd_transition_law, ETHD_TRANSITION), .step = rule}};
-static const ethd_contact_law contact = {LAW(ethd_contact_law, ETHD_CONTACT), touch};
-static const ethd_tracking_law tracking = {LAW(ethd_tracking_law, ETHD_TRACKING), track};
+static const ethd_contact_law contact = {.law = LAW(ethd_contact_law, ETHD_CONTACT), .step = touch};
+static const ethd_tracking_law tracking = {.law = LAW(ethd_tracking_law, ETHD_TRACKING), .step = track};
 
 static void set_number(ethd_setup *s, int n) {
   s->transition = &transitions[n % 2];

@@ -31,8 +31,8 @@ static ethd_status rule(const double *p, void *state, const ethd_contact *c, eth
 }
 
 #define LAW(type, kind) {sizeof(type), ETHD_ABI, kind, 0, "moody", "as it is told", NULL, 0, NULL, NULL}
-static const ethd_tracking_law moody_tracking = {LAW(ethd_tracking_law, ETHD_TRACKING), track};
-static const ethd_contact_law moody_contact = {LAW(ethd_contact_law, ETHD_CONTACT), touch};
+static const ethd_tracking_law moody_tracking = {.law = LAW(ethd_tracking_law, ETHD_TRACKING), .step = track};
+static const ethd_contact_law moody_contact = {.law = LAW(ethd_contact_law, ETHD_CONTACT), .step = touch};
 static const ethd_transition_law moody_transition = {.law = LAW(ethd_transition_law, ETHD_TRANSITION), .step = rule};
 
 void moody_open(rig *r, int latch) {

@@ -105,10 +105,13 @@ AT(ethd_law, check, 48, 8);
 AT(ethd_law, reset, 56, 8);
 SIZE(ethd_law, 64, 8);
 AT(ethd_tracking_law, step, 64, 8);
+AT(ethd_tracking_law, gains, 72, 8);
 AT(ethd_contact_law, step, 64, 8);
+AT(ethd_contact_law, gains, 72, 8);
 AT(ethd_transition_law, step, 64, 8);
 AT(ethd_transition_law, range, 72, 8);
 AT(ethd_transition_law, adopt, 80, 8);
+AT(ethd_transition_law, gains, 88, 8);
 _Static_assert(ETHD_TRACKING_LAW_MIN == 72 && ETHD_CONTACT_LAW_MIN == 72 && ETHD_TRANSITION_LAW_MIN == 72, "least");
 
 AT(ethd_plugin_entry, size, 0, 4);
@@ -258,8 +261,10 @@ TEST(test_every_law) {
    which may count on what this library doesn't give. */
 TEST(test_sizes_of_laws) {
   ethd_transition_law law = ethd_transition_smooth;
+  ck_assert_ptr_eq(ethd_law_gains(&law.law), law.gains);
   law.law.size = ETHD_TRANSITION_LAW_MIN;
   ck_assert_int_eq(ethd_law_check(&law.law, NULL), ETHD_OK);
+  ck_assert_ptr_null(ethd_law_gains(&law.law));
   law.law.size = sizeof law + 1;
   ck_assert_int_eq(ethd_law_check(&law.law, NULL), ETHD_E_SIZE);
   law.law.size = ETHD_TRANSITION_LAW_MIN - 1;
@@ -284,6 +289,11 @@ TEST(test_law_check) {
   ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_ARGUMENT);
   law.law.brief = NULL;
   ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_ARGUMENT);
+  law = ethd_transition_offset;
+  const ethd_gains strange = {NULL, "k_e"};
+  law.gains = &strange;
+  ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_TABLE);
+  ck_assert_str_eq(error.name, "offset.gains");
   law = ethd_transition_smooth;
   law.law.kind = 3;
   ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_ARGUMENT);
@@ -319,12 +329,10 @@ static void greedy_reset(const double *p, void *state) ETHD_RT {
   for (int i = 0; i < 64; i++) ck_assert_double_eq(block[i], 0);
 }
 
-#define GREEDY                                                                                                \
-  {{sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 512, "greedy", "all of its state", NULL, 0, NULL, \
-    greedy_reset},                                                                                            \
-   greedy_step,                                                                                               \
-   NULL,                                                                                                      \
-   NULL}
+#define GREEDY                                                                                                       \
+  {.law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 512, "greedy", "all of its state", NULL, 0, NULL, \
+           greedy_reset},                                                                                            \
+   .step = greedy_step}
 static const ethd_transition_law greedy = GREEDY, greedy_too = GREEDY;
 
 TEST(test_state_blocks) {

@@ -211,7 +211,8 @@ static ethd_status divides(const double *p, void *state, double gap, double spee
 TEST(test_foreign_law) {
   static const ethd_param params[] = {{"traps", "1", 0, 1, 0, "turns traps on"}};
   static const ethd_contact_law law = {
-      {sizeof law, ETHD_ABI, ETHD_CONTACT, 0, "divides", "divides by zero", params, 1, NULL, NULL}, divides};
+      .law = {sizeof law, ETHD_ABI, ETHD_CONTACT, 0, "divides", "divides by zero", params, 1, NULL, NULL},
+      .step = divides};
   static const mode traps = {FE_UPWARD, USUAL_TRAPS, 0};
   for (int bad = 0; bad < 2; bad++) {
     rig r;

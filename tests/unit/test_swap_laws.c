@@ -103,8 +103,9 @@ static ethd_status growing_step(const double *p, void *state, double gap, double
   return ETHD_OK;
 }
 
-#define GROWING \
-  {{sizeof(ethd_contact_law), ETHD_ABI, ETHD_CONTACT, 8, "growing", "counts", NULL, 0, NULL, NULL}, growing_step}
+#define GROWING                                                                                            \
+  {.law = {sizeof(ethd_contact_law), ETHD_ABI, ETHD_CONTACT, 8, "growing", "counts", NULL, 0, NULL, NULL}, \
+   .step = growing_step}
 static const ethd_contact_law growing = GROWING, growing_too = GROWING;
 
 TEST(test_state_of_other_laws) {

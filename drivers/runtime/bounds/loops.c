@@ -1,6 +1,7 @@
 #include "bounds/loops.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 const char *const ethd__bounds_names[ETHD_LOOP_KINDS] = {"tracking", "wall", "braking"};
@@ -30,52 +31,53 @@ static void at_ring(const double ji[4], double k, double along[2], double *acros
   if (fabs(*across) < 1e-9 * (along[0] + along[1])) *across = 0;
 }
 
-bool ethd__bounds_feel(const ethd_setup *setup, ethd__bounds_felt *out) {
-  double k_t = ethd_setup_get(setup, "tracking.k_t"), q[2];
-  ethd_pose pose;
-  if (isnan(k_t) || ethd_arm_angles(&setup->arm, (ethd_vec){ETHD_LOOP_FELT_X, ETHD_LOOP_FELT_Y}, -1, q)) return false;
-  ethd_arm_pose(&setup->arm, q, &pose);
-  at_ring(pose.j_inv, k_t, out->stiffness, &out->stiffness_across);
-  at_ring(pose.j_inv, or_zero(ethd_setup_get(setup, "tracking.b_t")), out->damping, &out->damping_across);
+static const ethd_law *law_of(const ethd_setup *setup, ethd__bounds_kind kind) {
+  if (kind == ETHD_LOOP_TRACKING) return &setup->tracking->law;
+  return kind == ETHD_LOOP_WALL ? &setup->contact->law : &setup->transition->law;
+}
+
+static double gain(const ethd_setup *setup, const char *section, const char *name, char key[48]) {
+  key[0] = 0;
+  if (!name) return 0;
+  snprintf(key, 48, "%s.%s", section, name);
+  return ethd_setup_get(setup, key);
+}
+
+bool ethd__bounds_gains_of(const ethd_setup *setup, ethd__bounds_kind kind, ethd__bounds_gains *out) {
+  static const char *const sections[ETHD_LOOP_KINDS] = {"tracking", "contact", "transition"};
+  const ethd_gains *gains = ethd_law_gains(law_of(setup, kind));
+  if (!gains) return false;
+  out->stiffness = gain(setup, sections[kind], gains->stiffness, out->stiffness_key);
+  out->damping = gain(setup, sections[kind], gains->damping, out->damping_key);
   return true;
 }
 
-static bool is_built_in(const ethd_law *law) {
-  for (const ethd_law *const *known = ethd_laws; *known; known++)
-    if (*known == law) return true;
-  return false;
-}
-
-static bool knows(const ethd_law *law, const char *gain) {
-  for (uint32_t i = 0; i < law->param_count; i++)
-    if (!strcmp(law->params[i].name, gain)) return true;
-  return false;
-}
-
 const ethd_law *ethd__bounds_unjudged(const ethd_setup *setup, ethd__bounds_kind kind) {
-  static const char *const gains[ETHD_LOOP_KINDS][2] = {
-      [ETHD_LOOP_TRACKING] = {"k_t", "b_t"}, [ETHD_LOOP_WALL] = {"k_e", "b_e"}, [ETHD_LOOP_BRAKING] = {"b_d", "b_d"}};
-  const ethd_law *const laws[ETHD_LOOP_KINDS] = {[ETHD_LOOP_TRACKING] = &setup->tracking->law,
-                                                 [ETHD_LOOP_WALL] = &setup->contact->law,
-                                                 [ETHD_LOOP_BRAKING] = &setup->transition->law};
-  const ethd_law *law = laws[kind];
-  return is_built_in(law) || knows(law, gains[kind][0]) || knows(law, gains[kind][1]) ? NULL : law;
+  const ethd_law *law = law_of(setup, kind);
+  return ethd_law_gains(law) ? NULL : law;
+}
+
+bool ethd__bounds_feel(const ethd_setup *setup, ethd__bounds_felt *out) {
+  ethd__bounds_gains gains;
+  double q[2];
+  ethd_pose pose;
+  if (!ethd__bounds_gains_of(setup, ETHD_LOOP_TRACKING, &gains) || !*gains.stiffness_key ||
+      ethd_arm_angles(&setup->arm, (ethd_vec){ETHD_LOOP_FELT_X, ETHD_LOOP_FELT_Y}, -1, q))
+    return false;
+  ethd_arm_pose(&setup->arm, q, &pose);
+  at_ring(pose.j_inv, gains.stiffness, out->stiffness, &out->stiffness_across);
+  at_ring(pose.j_inv, gains.damping, out->damping, &out->damping_across);
+  return true;
 }
 
 static bool set_gains(const ethd_setup *setup, ethd__bounds_kind kind, int axis, ethd__sampled_loop *out) {
+  ethd__bounds_gains gains;
   ethd__bounds_felt felt;
-  switch (kind) {
-  case ETHD_LOOP_TRACKING:
-    if (!ethd__bounds_feel(setup, &felt)) return false;
-    out->stiffness = felt.stiffness[axis];
-    out->damping = felt.damping[axis];
-    return true;
-  case ETHD_LOOP_WALL:
-    out->stiffness = or_zero(ethd_setup_get(setup, "contact.k_e"));
-    out->damping = or_zero(ethd_setup_get(setup, "contact.b_e"));
-    return true;
-  default: out->damping = or_zero(ethd_setup_get(setup, "transition.b_d")); return true;
-  }
+  if (!ethd__bounds_gains_of(setup, kind, &gains)) return false;
+  if (kind == ETHD_LOOP_TRACKING && !ethd__bounds_feel(setup, &felt)) return false;
+  out->stiffness = kind == ETHD_LOOP_TRACKING ? felt.stiffness[axis] : gains.stiffness;
+  out->damping = kind == ETHD_LOOP_TRACKING ? felt.damping[axis] : gains.damping;
+  return true;
 }
 
 bool ethd__bounds_of(const ethd_setup *setup, const ethd__bounds_device *device, ethd__bounds_kind kind, int axis,

@@ -38,17 +38,24 @@ typedef struct ethd__bounds_felt {
   double stiffness_across, damping_across; /* off the diagonal */
 } ethd__bounds_felt;
 
-/* Fills what is felt. False: the law has no k_t, or the arm doesn't reach the point. A law without b_t has no
-   damping. */
+/* Fills what is felt. False: the law names no stiffness, or the arm doesn't reach the point. */
 bool ethd__bounds_feel(const ethd_setup *setup, ethd__bounds_felt *out);
 
-/* Returns the law of a loop whose gains can't be known: it isn't built in, and none of its parameters has the name of
-   one of the loop's gains (k_t and b_t, k_e and b_e, b_d). Nothing is known of such a loop's stability. NULL: they are
-   known. */
+/* The gains of a loop, by the names of their keys ("contact.k_e"); a gain that its law doesn't have has none, and is 0. */
+typedef struct ethd__bounds_gains {
+  char stiffness_key[48], damping_key[48];
+  double stiffness, damping;
+} ethd__bounds_gains;
+
+/* Fills the gains that the loop's law names (ethd_gains). False: it doesn't say, so nothing is known of the loop's
+   stability. */
+bool ethd__bounds_gains_of(const ethd_setup *setup, ethd__bounds_kind kind, ethd__bounds_gains *out);
+
+/* Returns the law of a loop that doesn't name its gains, NULL if it does. */
 const ethd_law *ethd__bounds_unjudged(const ethd_setup *setup, ethd__bounds_kind kind);
 
-/* Fills the loop along an axis (0: x, 1: y). A gain that the law doesn't have is 0, and an unknown mass is 1 kg. False:
-   the stiffness of tracking isn't known. */
+/* Fills the loop along an axis (0: x, 1: y); an unknown mass is 1 kg. False: its gains aren't known, or the stiffness of
+   tracking. */
 bool ethd__bounds_of(const ethd_setup *setup, const ethd__bounds_device *device, ethd__bounds_kind kind, int axis,
                      ethd__sampled_loop *out);
 

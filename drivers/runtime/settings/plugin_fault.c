@@ -88,6 +88,8 @@ static void law_fault(const ethd_law *law, const ethd_error *error, char *what) 
               ETHD_STATE_MAX);
   else if (error->status == ETHD_E_TABLE && ethd__table_fault(law->params, law->param_count, row))
     ethd__say(what, error->status, "law %s: params: %s", law->id, row);
+  else if (error->status == ETHD_E_TABLE)
+    ethd__say(what, error->status, "law %s: its gains aren't among its parameters", law->id);
   else if (!ethd__text_is_line(law->brief, ETHD_BRIEF_MAX))
     ethd__say(what, error->status, "law %s: its brief is %s, one line of 1 to %d printable characters is allowed",
               law->id, quoted(law->brief, quote), ETHD_BRIEF_MAX);
