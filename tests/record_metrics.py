@@ -63,7 +63,8 @@ def measure(k, t, speed, never_fast):
         braking = first(k["state"] == 1, met)
         vo = None if braking is None else first(k["state"] == 2, braking)
         if vo is not None:
-            out["delta_s_ms"], out["eps_m"] = (vo - braking) * 1e3 * PERIOD, k["eps"][vo]
+            out["delta_s_ms"] = None if met and k["state"][met - 1] == 1 else (vo - braking) * 1e3 * PERIOD
+            out["eps_m"] = k["eps"][vo]
         touch = first(t["pad"] > 0, met)
     if touch is not None:
         out["t_of_s"], out["v_of_tick_mps"], out["v_rmin_mps"] = t["t"][touch], v[touch], v[touch + 1 : touch + 101].min()

@@ -87,14 +87,15 @@ static size_t periods(const ethd__tap_rows *rows, size_t from, size_t to) {
   return n;
 }
 
-/* Delta_s and eps, for laws that brake. */
+/* Delta_s and eps, for laws that brake. One that has braked before the wall has no time of braking from the wall on. */
 static void braking(const ethd__tap_rows *rows, const ethd__rule *rule, size_t from, ethd__metrics *out) {
   size_t i = from;
   while (i < rows->count && rows->trace[i].state != ETHD_BRAKING) i++;
   size_t begin = i;
   while (i < rows->count && rows->trace[i].state != ETHD_VO) i++;
   if (i >= rows->count) return;
-  out->delta_s = (double)periods(rows, begin, i) * (1e3 * rule->period);
+  bool before = from > 0 && rows->trace[from - 1].state == ETHD_BRAKING;
+  if (!before) out->delta_s = (double)periods(rows, begin, i) * (1e3 * rule->period);
   out->eps = rows->trace[i].eps;
 }
 

@@ -88,7 +88,7 @@ typedef struct ethd__metrics {
   double d_max;                    /* m: first rebound of the measured side; 0 when it never turns back */
   double d_max_ring;               /* m: likewise of the ring, whatever is measured */
   double v_rmin;                   /* m/s: smallest after t_of */
-  double delta_s;                  /* ms: first braking tick to first vo tick after it */
+  double delta_s;                  /* ms: first braking tick from t_r/vo on to first vo tick; NaN: it braked before */
   double eps;                      /* m: offset at that vo tick */
   double t_rvo, t_of;              /* s of the tap */
   double t_seen;                   /* s of the tap: the finger's avatar reaches the wall that is seen */

@@ -117,6 +117,14 @@ TEST(test_braking) {
   ck_assert(isnan(m.delta_s) && isnan(m.eps));
 }
 
+/* A law that brakes before the wall has an offset, but no time of braking from the wall on. */
+TEST(test_braking_before_the_wall) {
+  for (int i = 49; i < COUNT; i++) trace[i].state = i < 59 ? ETHD_BRAKING : ETHD_VO, trace[i].eps = 1e-3;
+  ethd__metrics m = measure();
+  ck_assert(isnan(m.delta_s));
+  ck_assert_double_eq(m.eps, 1e-3);
+}
+
 /* A law without braking has neither, whatever its vo means. */
 TEST(test_vo_without_braking) {
   for (int i = 50; i < COUNT; i++) trace[i].state = ETHD_VO;

@@ -81,7 +81,7 @@ def _pictures(r: Report, taps: Taps, prefix: str, whose: str) -> None:
     if any(len(c.values(QUANTITIES["delta_s"])) for c in taps.cells):
         _draw_boxes(r, taps, prefix, "braking", "delta_s eps", f"Braking: {whose}",
                     f"Time of braking and offset of the wall, {whose}: what Table 1 sums up. Where the dots make two heaps, the "
-                    "mean between them describes no tap.")
+                    "mean between them describes no tap. A strategy that brakes before the wall has no time of braking.")
 
 
 def boxes(r: Report) -> None:
