@@ -54,7 +54,7 @@ if [ -z "${SAN:-}" ]; then
 $("$work/clone/wall")
 END
   grep -q '^mine  *low  *20 .* %' "$work/walk.out" && [ -s "$work/clone/taps/tick.npy" ] || fail "its law isn't tapped: $(cat "$work/walk.out")"
-  "$work/home/.local/bin/ethd-check" "$work/clone/mine/n.ini" | grep -q '^k_e *= 500 ' || fail "k_e isn't set"
+  "$work/home/.local/bin/ethd-check" "$work/clone/mine/q.ini" | grep -q '^k_e *= 500 ' || fail "k_e isn't set"
   "$work/home/.local/bin/ethd-check" "$work/clone/mine.ini" | grep -q '^brake *= 80 ' || fail "brake isn't set"
 fi
 [ "$(wc -l <README.md)" -lt 150 ] || fail "$(wc -l <README.md) lines: fewer than 150 are read"
