@@ -160,7 +160,7 @@ static void decide(const char *option, const char *decision, const char *text) {
   }
   char rest;
   ethd__about *tap = &arg.decided;
-  if (sscanf(text, "P%5u-%2zu-%7u%c", &tap->participant, &tap->block, &tap->attempt, &rest) != 3 || !tap->participant ||
+  if (sscanf(text, "P%5u-%4zu-%7u%c", &tap->participant, &tap->block, &tap->attempt, &rest) != 3 || !tap->participant ||
       !tap->block || !tap->attempt)
     ethd__fail(ETHD_EXIT_INPUT, "%s: found \"%.40s\", participant, block and attempt as in P01-02-004 are allowed",
                option, text);

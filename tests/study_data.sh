@@ -205,6 +205,33 @@ grep -q '^Primary outcomes: eps:smooth-offset:high$' "$folder/plan" || fail "the
 grep -qx "Hash of study.*: $(sed -n 's/^hash //p' "$folder/planned/versions.txt")" "$folder/plan" || fail "the plan's hash isn't the folder's"
 refuse 2 'declares no primary outcomes' "$BUILD/bin/ethd-report" --power "$folder/station1"
 
+# ---- interleaved trials: every cell has its valid taps, in rounds, each with a finger of its own; killed and gone on with ----
+printf '[study]\nparticipants = 4\norder = interleaved\ntraining = 1\ntaps = 3\nattempts = 90\n' >"$folder/trials.study"
+"$study" "$folder/trials.study" --plan >"$folder/plan" && grep -q '^    4  first  low 6:6 .*  balanced$' "$folder/plan" && ! grep -q WARNING "$folder/plan" || fail "the plan of trials: $(cat "$folder/plan")"
+"$study" "$folder/trials.study" --quiet --out "$folder/trials" >"$folder/out" 2>&1 || fail "trials: $(cat "$folder/out")"
+"$study" "$folder/trials.study" --out "$folder/killed" >"$folder/out" 2>&1 &
+pid=$!
+for _ in $(seq 200); do [ "$(grep -c tap "$folder/out")" -ge 5 ] && break; sleep 0.02; done
+kill -KILL $pid
+wait $pid 2>/dev/null
+"$study" --resume "$folder/killed" --quiet >"$folder/out" 2>&1 || fail "trials gone on with: $(cat "$folder/out")"
+cmp "$folder/trials/taps.csv" "$folder/killed/taps.csv" || fail "trials after a kill"
+"$python3" - "$folder/trials" <<'END' || fail "the trials"
+import collections, csv, sys
+taps = [t for t in csv.DictReader(open(sys.argv[1] + "/taps.csv")) if t["part"] == "test"]
+valid = [t for t in taps if t["valid"] == "1"]
+cells = collections.Counter((t["participant"], t["transition"], t["speed"]) for t in valid)
+assert set(cells.values()) == {3} and len(cells) == 16, cells
+fingers = collections.Counter((t["participant"], t["transition"], t["tap"]) for t in taps)
+assert set(fingers.values()) == {1}, fingers
+for who in {t["participant"] for t in valid}:
+    mine = [(t["transition"], t["speed"]) for t in valid if t["participant"] == who]
+    assert all(len(set(mine[i:i + 4])) == 4 for i in (0, 4, 8)), mine
+END
+last=$(tail -n 1 "$folder/trials/taps.csv" | awk -F, '{ printf "%s-%02d-%03d", $1, $2, $4 }')
+"$study" --resume "$folder/trials" --reject "$last" --reason looked >"$folder/out" 2>&1 || fail "rejecting a trial: $(cat "$folder/out")"
+"$study" --resume "$folder/trials" --quiet >"$folder/out" 2>&1 && grep -q ': 1 tap' "$folder/out" || grep -q ': [0-9]* taps;' "$folder/out" || fail "a rejected trial: $(cat "$folder/out")"
+
 # ---- orders: printed, kept, and counted here ----
 printf '[study]\nparticipants = 12\nstrategies = abrupt,smooth,offset\norder = latin\ntraining = 1\n' >"$folder/orders.study"
 "$study" "$folder/orders.study" --plan >"$folder/plan" || fail "--plan"

@@ -93,6 +93,8 @@ static void block(void *self, const char *participant, const ethd__turn *turn, b
   snprintf(s->title, sizeof s->title, "%s   %s%s%s", participant, part, turn->block.training ? ", " : "",
            turn->block.training ? WORDS(PRACTICE) : "");
   fill(s, ETHD_PHRASE_SPEED, "%.2g", &s->speed.centre, 1, speed, sizeof speed);
+  size_t first = s->protocol->training ? s->protocol->speeds.count + 1 : 1;
+  if (s->protocol->order == ETHD_ORDER_INTERLEAVED && turn->number > first && !rest) return; /* the cue has the speed */
   s->feedback[0] = s->achieved[0] = 0;
   s->good = false;
   ethd__page page = {.title = s->title, .keys = WORDS(KEYS_GO)};

@@ -15,7 +15,9 @@ typedef struct study_column {
 const char *const ethd__table_names[ETHD_TABLES] = {"taps", "survey", "events", "participants", "orders"};
 
 #define PARTICIPANT {"participant", "", "P01, P02, ..", NULL}
-#define BLOCK {"block", "", "of the participant, from 1: a strategy at a speed, or a training", NULL}
+#define BLOCK   \
+  {"block", "", \
+   "of the participant, from 1: a strategy at a speed, one trial of it in an interleaved order, or a training", NULL}
 #define PART {"part", "", "training or test", "training=isn't analysed|test=is"}
 #define HANDS                                                                                                  \
   "device=a person's finger in the device's ring|mouse=a person's pointer, which leads the simulated device's" \

@@ -47,9 +47,14 @@ static void seat(ethd__desk *desk, uint32_t person) {
 
 /* ---- recorded fingers ---- */
 
+/* How many taps of its cell are before it at least, as if each trial took all its attempts. */
+static uint32_t before(const ethd__desk *desk, const ethd__turn *turn) {
+  return turn->block.round * ethd__block_attempts(desk->protocol) + turn->attempt - 1;
+}
+
 /* The movements are dealt out among the participants; every strategy meets the same ones. */
 static size_t movement_of(const ethd__desk *desk, const ethd__turn *turn) {
-  size_t k = turn->person + (size_t)desk->protocol->participants * (turn->attempt - 1);
+  size_t k = turn->person + (size_t)desk->protocol->participants * before(desk, turn);
   return (k + (turn->block.training ? desk->movement_count / 2 : 0)) % desk->movement_count;
 }
 
@@ -82,9 +87,9 @@ static ethd_status open_stage(ethd__desk *desk, size_t strategy, char *message) 
   return status;
 }
 
-/* Attempt k has the same finger under every strategy. */
-static uint64_t tap_of(const ethd__turn *turn) {
-  return (uint64_t)turn->block.training << 32 | (uint64_t)turn->block.speed << 24 | (turn->attempt - 1);
+/* Attempt k of a round has the same finger under every strategy. */
+static uint64_t tap_of(const ethd__desk *desk, const ethd__turn *turn) {
+  return (uint64_t)turn->block.training << 32 | (uint64_t)turn->block.speed << 24 | before(desk, turn);
 }
 
 ethd_status ethd__desk_prepare(ethd__desk *desk, const ethd__turn *turn, ethd__taken *out,
@@ -97,7 +102,7 @@ ethd_status ethd__desk_prepare(ethd__desk *desk, const ethd__turn *turn, ethd__t
                        .hand = desk->movement_count ? ETHD_HAND_RECORDED : ETHD_HAND_SIMULATED,
                        .movement = movement_name(desk),
                        .seed = desk->study.seed,
-                       .tap = tap_of(turn),
+                       .tap = tap_of(desk, turn),
                        .speed = &desk->speeds[turn->block.speed],
                        .stage = &desk->stage};
   return ETHD_OK;

@@ -51,10 +51,30 @@ static size_t last_at(size_t strategies, const size_t cell[CELLS], size_t count,
   return last % strategies;
 }
 
+uint32_t ethd__block_taps(const ethd__protocol *p) { return p->order == ETHD_ORDER_INTERLEAVED ? 1 : p->taps; }
+
+uint32_t ethd__block_attempts(const ethd__protocol *p) {
+  return p->order == ETHD_ORDER_INTERLEAVED ? (p->attempts + p->taps - 1) / p->taps : p->attempts;
+}
+
+static size_t interleaved(const ethd__protocol *p, size_t count, uint32_t participant, ethd__study_block *out) {
+  size_t cell[CELLS], n = 0, strategies = p->strategies.count;
+  latin(p, count, (participant + 1) * p->taps - 1, cell);
+  for (size_t speed = 0; p->training && speed < p->speeds.count; speed++)
+    out[n++] = (ethd__study_block){true, last_at(strategies, cell, count, speed), speed, 0};
+  for (uint32_t round = 0; round < p->taps; round++) {
+    latin(p, count, participant * p->taps + round, cell);
+    for (size_t i = 0; i < count; i++)
+      out[n++] = (ethd__study_block){false, cell[i] % strategies, cell[i] / strategies, round};
+  }
+  return n;
+}
+
 size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant, ethd__study_block out[ETHD_STUDY_BLOCKS]) {
   size_t cell[CELLS], n = 0, strategies = protocol->strategies.count;
   size_t count = strategies * protocol->speeds.count;
   bool trained[ETHD_STUDY_WORDS] = {false};
+  if (protocol->order == ETHD_ORDER_INTERLEAVED) return interleaved(protocol, count, participant, out);
   if (protocol->order == ETHD_ORDER_PAPER)
     paper(strategies, count, participant, cell);
   else if (protocol->order == ETHD_ORDER_RANDOM)
@@ -64,9 +84,9 @@ size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant, ethd
   for (size_t i = 0; i < count; i++) {
     size_t speed = cell[i] / strategies;
     if (protocol->training && !trained[speed])
-      out[n++] = (ethd__study_block){true, last_at(strategies, cell, count, speed), speed};
+      out[n++] = (ethd__study_block){true, last_at(strategies, cell, count, speed), speed, 0};
     trained[speed] = true;
-    out[n++] = (ethd__study_block){false, cell[i] % strategies, speed};
+    out[n++] = (ethd__study_block){false, cell[i] % strategies, speed, 0};
   }
   return n;
 }

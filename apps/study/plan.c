@@ -2,19 +2,26 @@
 
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "study/columns.h"
 #include "text/text.h"
 
 #define FARTHEST 4 /* times the cells, up to which another number of participants is looked for */
 
-/* How often each strategy came first, last and behind each other one at a speed, among the first participants. */
+/* How often each strategy came first, last and behind each other one at a speed, among the first participants. In
+   interleaved trials, in a round. */
 typedef struct balance {
   uint32_t first[ETHD_STUDY_WORDS][ETHD_STUDY_WORDS], last[ETHD_STUDY_WORDS][ETHD_STUDY_WORDS]; /* [speed][strategy] */
   uint32_t behind[ETHD_STUDY_WORDS][ETHD_STUDY_WORDS][ETHD_STUDY_WORDS]; /* [speed][before][strategy] */
 } balance;
 
 /* ---- counting ---- */
+
+static void end_round(const ethd__protocol *p, const size_t *before, bool *begun, balance *b) {
+  for (size_t speed = 0; speed < p->speeds.count; speed++) b->last[speed][before[speed]]++;
+  memset(begun, 0, p->speeds.count * sizeof *begun);
+}
 
 static void count_person(const ethd__protocol *p, uint32_t person, balance *b) {
   ethd__study_block blocks[ETHD_STUDY_BLOCKS];
@@ -23,6 +30,7 @@ static void count_person(const ethd__protocol *p, uint32_t person, balance *b) {
   for (size_t i = 0; i < count; i++) {
     size_t speed = blocks[i].speed, strategy = blocks[i].strategy;
     if (blocks[i].training) continue;
+    if (i && blocks[i].round != blocks[i - 1].round) end_round(p, before, begun, b);
     if (begun[speed])
       b->behind[speed][before[speed]][strategy]++;
     else
@@ -30,7 +38,7 @@ static void count_person(const ethd__protocol *p, uint32_t person, balance *b) {
     begun[speed] = true;
     before[speed] = strategy;
   }
-  for (size_t speed = 0; speed < p->speeds.count; speed++) b->last[speed][before[speed]]++;
+  end_round(p, before, begun, b);
 }
 
 static bool is_even(const uint32_t *count, size_t n) {
@@ -141,7 +149,7 @@ static void print_balance(FILE *file, const ethd__protocol *p) {
 }
 
 static void warn(FILE *file, const ethd__protocol *p) {
-  static const char *const words[] = {"paper", "random", "latin"};
+  static const char *const words[] = {"paper", "random", "latin", "interleaved"};
   uint32_t next = next_balanced(p, p->participants);
   if (next == p->participants) return;
   fprintf(file, "\nWARNING: order = %s isn't balanced with %" PRIu32 " participant%s; ", words[p->order],

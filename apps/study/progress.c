@@ -9,7 +9,7 @@
 
 bool ethd__block_over(const ethd__protocol *protocol, const ethd__study_block *block, uint32_t taken, uint32_t valid) {
   if (block->training) return taken >= protocol->training;
-  return valid >= protocol->taps || taken >= protocol->attempts;
+  return valid >= ethd__block_taps(protocol) || taken >= ethd__block_attempts(protocol);
 }
 
 /* ---- a participant ---- */

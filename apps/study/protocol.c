@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "study/order.h"
 #include "study/protocol_keys.h"
 #include "text/error_text.h"
 #include "text/text.h"
@@ -108,6 +109,11 @@ static ethd_status check(const ethd_ini *ini, const ethd__entry *last, ethd__pro
     return ethd__entry_refuse(&e, ETHD_E_RANGE,
                               "%" PRIu32 " attempts can't make %" PRIu32 " valid taps; at least as many are allowed",
                               p->attempts, p->taps);
+  e.key = ethd_ini_find(ini, "study", "order");
+  size_t trials = p->strategies.count * p->speeds.count * (size_t)p->taps + p->speeds.count;
+  if (p->order == ETHD_ORDER_INTERLEAVED && trials > ETHD_STUDY_BLOCKS)
+    return ethd__entry_refuse(&e, ETHD_E_RANGE, "%zu trials and trainings; at most %d are allowed", trials,
+                              ETHD_STUDY_BLOCKS);
   e.key = motion;
   if (motion && p->hands != ETHD_HANDS_RECORDED)
     return ethd__entry_refuse(&e, ETHD_E_RANGE, "stands there without source = recorded");

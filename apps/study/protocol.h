@@ -6,7 +6,7 @@
      participants = 3                     between = 0.5           share of the plant's variance between people
      strategies = smooth,offset           hand_spread = 0.15      of stiffness and damping, ln, between people
      speeds = low,high
-     order = paper     random, latin      [validity]
+     order = paper     see order.h        [validity]
      training = 2      per speed          by = paper              finger: by the finger alone, for any law
      taps = 3          valid ones         band_low = 0.06         m/s about 0.2; the plant's without
      attempts = 40     at most, a cell    band_high = 0.08        m/s about 0.4
@@ -53,7 +53,7 @@
 #define ETHD_STUDY_ID_MAX 16
 #define ETHD_STUDY_TEXT_MAX ((size_t)1 << 20)
 
-typedef enum ethd__order { ETHD_ORDER_PAPER, ETHD_ORDER_RANDOM, ETHD_ORDER_LATIN } ethd__order;
+typedef enum ethd__order { ETHD_ORDER_PAPER, ETHD_ORDER_RANDOM, ETHD_ORDER_LATIN, ETHD_ORDER_INTERLEAVED } ethd__order;
 
 /* Whose hands: the simulated device's, on a synthetic or a recorded path, people's on any device, or the mouse's. */
 typedef enum ethd__hands { ETHD_HANDS_SIMULATED, ETHD_HANDS_RECORDED, ETHD_HANDS_PEOPLE, ETHD_HANDS_MOUSE } ethd__hands;

@@ -154,7 +154,7 @@ static const key_row rows[] = {
     {"study", "participants", set_count, AT(participants), 1, ETHD_STUDY_PEOPLE, NULL},
     {"study", "strategies", set_words, AT(strategies), 0, 0, NULL},
     {"study", "speeds", set_words, AT(speeds), 0, 0, NULL},
-    {"study", "order", set_choice, AT(order), 0, 0, "paper|random|latin"},
+    {"study", "order", set_choice, AT(order), 0, 0, "paper|random|latin|interleaved"},
     {"study", "training", set_count, AT(training), 0, 1000, NULL},
     {"study", "taps", set_count, AT(taps), 1, 100000, NULL},
     {"study", "attempts", set_count, AT(attempts), 1, 1000000, NULL},

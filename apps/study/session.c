@@ -55,7 +55,7 @@ static void tell(ethd__sitting *s) {
   s->front.verdict(s->front.self, id, &s->latest,
                    &(ethd__tally){.taken = at->taken,
                                   .valid = at->valid,
-                                  .wanted = turn->block.training ? 0 : s->folder->protocol.taps,
+                                  .wanted = turn->block.training ? 0 : ethd__block_taps(&s->folder->protocol),
                                   .accepted = at->accepted,
                                   .rejected = at->rejected,
                                   .checked = s->checked});
@@ -160,7 +160,8 @@ static bool block_due(const ethd__sitting *s, const ethd__turn *turn) {
 static ethd_status run_block(ethd__sitting *s, const char *id, ethd__turn *turn, bool *stop, char *message) {
   const ethd__protocol *p = &s->folder->protocol;
   ethd_status status = ETHD_OK;
-  bool rest = p->rest && turn->number > 1 && (turn->number - 1) % p->rest == 0, left = !block_due(s, turn);
+  size_t every = p->rest * p->taps / ethd__block_taps(p);
+  bool rest = every && turn->number > 1 && (turn->number - 1) % every == 0, left = !block_due(s, turn);
   if (!left) s->front.block(s->front.self, id, turn, rest);
   bool begun = !left;
   turn->attempt = 0;

@@ -131,7 +131,7 @@ static void select_participants(FILE *sql, const ethd__folder *folder) {
       " coalesce(taps, 0), coalesce(valid, 0), coalesce(accepted, 0), coalesce(rejected, 0),"
       " (SELECT utc FROM tap WHERE point = 0 AND tap.participant = people.participant ORDER BY id LIMIT 1),"
       " (SELECT utc FROM tap WHERE point = 0 AND tap.participant = people.participant ORDER BY id DESC LIMIT 1)",
-      p->taps, p->attempts, p->training, count);
+      ethd__block_taps(p), ethd__block_attempts(p), p->training, count);
   select_answers(sql, p->questionnaire.question[ETHD_ASK_BEFORE], "people.participant", "0");
   select_answers(sql, p->questionnaire.question[ETHD_ASK_AFTER], "people.participant", behind);
   fputs(" FROM (SELECT participant FROM tapped UNION SELECT participant FROM decided UNION SELECT participant FROM "

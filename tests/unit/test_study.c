@@ -169,6 +169,36 @@ TEST(test_random_order) {
   ethd__protocol_free(&protocol);
 }
 
+/* Trials: each round has every cell once, and over the square's rows each cell at each place; trainings come first. */
+TEST(test_interleaved_trials) {
+  size_t place[6][6] = {{0}}, repeats = 0;
+  char first[512];
+  read("[study]\norder = interleaved\nstrategies = a,b,c\ntaps = 4\n");
+  snprintf(first, sizeof first, "%s", order_of(0));
+  ck_assert_str_ne(order_of(1), first);
+  for (uint32_t p = 0; p < 6; p++) {
+    ck_assert_uint_eq(ethd__order_of(&protocol, p, blocks), 2 + 4 * 6);
+    ck_assert(blocks[0].training && blocks[1].training && blocks[0].speed != blocks[1].speed);
+    for (size_t round = 0; round < 4; round++)
+      for (size_t i = 0; i < 6; i++) {
+        const ethd__study_block *b = &blocks[2 + 6 * round + i];
+        ck_assert(!b->training && b->round == round);
+        place[3 * b->speed + b->strategy][i]++;
+        repeats += i && b->strategy == b[-1].strategy && b->speed == b[-1].speed;
+      }
+  }
+  for (size_t i = 0; i < 36; i++) ck_assert_uint_eq(place[i / 6][i % 6], 4);
+  ck_assert_uint_eq(repeats, 0);
+  ck_assert_uint_eq(ethd__block_taps(&protocol), 1);
+  ck_assert_uint_eq(ethd__block_attempts(&protocol), 10);
+  ethd__protocol_free(&protocol);
+  read("[study]\norder = interleaved\nstrategies = a,b,c\ntaps = 4\nseed = 2\n");
+  ck_assert_str_ne(order_of(0), first);
+  ethd__protocol_free(&protocol);
+  ck_assert_int_eq(parse("[study]\ntaps = 256\norder = interleaved\n"), ETHD_E_RANGE);
+  ck_assert_str_eq(message, "x.study:3: study.order: 1026 trials and trainings; at most 1024 are allowed");
+}
+
 /* ---- people ---- */
 
 /* What lies between and within people makes up what the plant says; radii are a person's. */
