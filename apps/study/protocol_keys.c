@@ -9,6 +9,7 @@
 
 #include "text/error_text.h"
 #include "text/file_name.h"
+#include "text/key.h"
 #include "text/text.h"
 
 typedef struct key_row key_row;
@@ -20,79 +21,63 @@ struct key_row {
   const char *words; /* of choices: "off|on" */
 };
 
+static ethd__key key_of(const ethd__entry *e) { return ethd__key_of(e->file, e->key, e->message); }
+
 ethd_status ethd__entry_refuse(const ethd__entry *e, ethd_status status, const char *format, ...) {
   char what[ETHD_MESSAGE_MAX];
+  const ethd__key key = key_of(e);
   va_list args;
   va_start(args, format);
   ethd__say_all(what, format, args);
   va_end(args);
-  return ethd__say(e->message, status, "%s:%d: %s.%s: %s", e->file, e->key->line, e->key->section, e->key->key, what);
+  return ethd__key_refuse(&key, status, "%s", what);
 }
 
-static ethd_status found(const ethd__entry *e, const char *word, const char *allowed) {
-  char quote[ETHD_QUOTE_MAX];
-  return ethd__entry_refuse(e, ETHD_E_RANGE, "found %s, %s is allowed", ethd__quote(word, strlen(word), quote),
-                            allowed);
+static ethd_status found(const ethd__entry *e, const char *allowed) {
+  const ethd__key key = key_of(e);
+  return ethd__key_found(&key, ETHD_E_RANGE, allowed);
 }
 
 /* ---- kinds of values ---- */
 
-static ethd_status set_number(const ethd__entry *e, const key_row *row, void *at) {
-  char allowed[96];
-  double value;
-  snprintf(allowed, sizeof allowed, "a number from %.10g to %.10g", row->min, row->max);
-  if (!ethd__number(e->key->value, strlen(e->key->value), &value) || !(value >= row->min && value <= row->max))
-    return found(e, e->key->value, allowed);
-  *(double *)at = value;
-  return ETHD_OK;
+static ethd_status read_value(const ethd__entry *e, const key_row *row, const char *unit, double *out) {
+  const ethd__key key = key_of(e);
+  return ethd__key_value(&key, &(ethd_param){row->key, unit, row->min, row->max, 0, ""}, out);
 }
 
-static bool whole(const char *text, uint64_t *out) {
-  errno = 0;
-  *out = strtoumax(text, NULL, 10);
-  return *text && !text[strspn(text, "0123456789")] && !errno;
+static ethd_status set_number(const ethd__entry *e, const key_row *row, void *at) {
+  return read_value(e, row, "1", at);
 }
 
 static ethd_status set_count(const ethd__entry *e, const key_row *row, void *at) {
-  char allowed[96];
-  uint64_t value;
-  snprintf(allowed, sizeof allowed, "a whole number from %.0f to %.0f", row->min, row->max);
-  if (!whole(e->key->value, &value) || !(value >= row->min && value <= row->max))
-    return found(e, e->key->value, allowed);
+  double value = *(uint32_t *)at;
+  ethd_status status = read_value(e, row, ETHD_WHOLE, &value);
   *(uint32_t *)at = (uint32_t)value;
-  return ETHD_OK;
-}
-
-static ethd_status set_seed(const ethd__entry *e, const key_row *row, void *at) {
-  (void)row;
-  return whole(e->key->value, at) ? ETHD_OK : found(e, e->key->value, "a whole number from 0 to 2^64 - 1");
-}
-
-/* Returns the index of `word` in "a|b|c", -1 if it isn't there. */
-static int choice(const char *words, const char *word) {
-  int index = 0;
-  size_t length = strlen(word);
-  for (const char *p = words; *p; p += *p == '|', index++) {
-    size_t n = strcspn(p, "|");
-    if (n == length && !memcmp(p, word, n)) return index;
-    p += n;
-  }
-  return -1;
+  return status;
 }
 
 /* An enumeration. */
 static ethd_status set_choice(const ethd__entry *e, const key_row *row, void *at) {
-  int index = choice(row->words, e->key->value);
-  if (index < 0) return found(e, e->key->value, row->words);
-  *(unsigned *)at = (unsigned)index;
-  return ETHD_OK;
+  double value = *(unsigned *)at;
+  ethd_status status = read_value(e, row, row->words, &value);
+  *(unsigned *)at = (unsigned)value;
+  return status;
 }
 
 static ethd_status set_switch(const ethd__entry *e, const key_row *row, void *at) {
-  int index = choice(row->words, e->key->value);
-  if (index < 0) return found(e, e->key->value, row->words);
-  *(bool *)at = index == 1;
-  return ETHD_OK;
+  double value = *(bool *)at;
+  ethd_status status = read_value(e, row, row->words, &value);
+  *(bool *)at = value > 0;
+  return status;
+}
+
+/* A double can't hold all of them. */
+static ethd_status set_seed(const ethd__entry *e, const key_row *row, void *at) {
+  const char *text = e->key->value;
+  (void)row;
+  errno = 0;
+  *(uint64_t *)at = strtoumax(text, NULL, 10);
+  return text[strspn(text, "0123456789")] || errno ? found(e, "a whole number from 0 to 2^64 - 1") : ETHD_OK;
 }
 
 static ethd_status set_text(const ethd__entry *e, const key_row *row, void *at) {
@@ -104,7 +89,7 @@ static ethd_status set_text(const ethd__entry *e, const key_row *row, void *at) 
 
 /* The name is used in tables and file names. */
 static ethd_status set_name(const ethd__entry *e, const key_row *row, void *at) {
-  if (!ethd__file_word(e->key->value)) return found(e, e->key->value, ETHD_FILE_WORD);
+  if (!ethd__file_word(e->key->value)) return found(e, ETHD_FILE_WORD);
   return set_text(e, row, at);
 }
 
@@ -138,8 +123,7 @@ static ethd_status set_words(const ethd__entry *e, const key_row *row, void *at)
   while (!status && (word = strsep(&rest, ","))) {
     word += strspn(word, " \t");
     word[strcspn(word, " \t")] = 0;
-    status =
-        is_word(word) ? add_word(e, words, word) : found(e, e->key->value, "word,word.. of letters, digits, _ . + -");
+    status = is_word(word) ? add_word(e, words, word) : found(e, "word,word.. of letters, digits, _ . + -");
   }
   free(list);
   return status;
@@ -197,7 +181,8 @@ static ethd_status set_axis(const ethd__entry *e) {
   ethd__protocol *p = e->out;
   if (p->axis_count == ETHD_STUDY_GAINS)
     return ethd__entry_refuse(e, ETHD_E_RANGE, "at most %d gains are allowed", ETHD_STUDY_GAINS);
-  if (!strchr(e->key->key, '.')) return found(e, e->key->key, "section.key of a configuration");
+  if (!strchr(e->key->key, '.'))
+    return ethd__entry_refuse(e, ETHD_E_RANGE, "section.key of a configuration is allowed");
   ethd__axis *axis = &p->axes[p->axis_count++];
   *axis = (ethd__axis){.key = strdup(e->key->key)};
   if (!axis->key) return ethd__entry_refuse(e, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
@@ -258,10 +243,9 @@ static ethd_status set_own_words(const ethd__entry *e) {
 }
 
 static ethd_status unknown_key(const ethd__entry *e) {
-  char list[192] = "";
+  char list[ETHD_MESSAGE_MAX] = "";
   for (int i = 0; i < ROWS; i++)
-    if (!strcmp(rows[i].section, e->key->section))
-      snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", *list ? ", " : "", rows[i].key);
+    if (!strcmp(rows[i].section, e->key->section)) ethd__list_add(list, rows[i].key);
   return ethd__entry_refuse(e, ETHD_E_UNKNOWN, "no key of this section; %s are allowed", list);
 }
 
