@@ -43,8 +43,8 @@ seed() { # NAME SOURCE SED
   check "$work/$1.c" -I"${2%/*}" -Iinclude -Ilib -Idrivers -Idrivers/runtime >"$work/out" 2>&1 && fail "$1: the seeded breach isn't found"
   grep -q "$4" "$work/out" || fail "$1: found otherwise: $(head -n 3 "$work/out")"
 }
-seed heap lib/control/control.c 's|^  t.soft = take_clear(control);|  free(malloc(1));&|; 1i #include <stdlib.h>' "'malloc'"
+seed heap lib/control/control.c 's|^  t.soft = take_clear(control);|  free(malloc(1));&|; 1i #include <stdlib.h>' "'free'"
 seed inferred lib/arm.c 's|^static double wrap.*{|&\n  putchar(10);|; 1i #include <stdio.h>' "'wrap'"
-seed pointer drivers/runtime/device/device.c 's|d->at.i..driver->write(|d->at[i].driver->stop(d->at[i].state), \&|' 'non-.nonblocking'
+seed pointer drivers/runtime/device/device.c 's|worse(status, \(d->at.i..driver->\)write(|worse(\1stop(d->at[i].state), \1write(|' 'non-.nonblocking'
 seed lock drivers/runtime/loop/cycle.c 's|^  raise(&l->stats.ticks, 1);|  pthread_mutex_lock(0);&|' "'pthread_mutex_lock'"
 exit $failed

@@ -23,7 +23,7 @@ ethd_status ethd__drift_prepare(double ring_radius, double finger_radius, ethd__
 }
 
 /* Fits a circle and returns whether enough rays lie on it; e is 0 for the others. */
-static bool fit(const ethd__drift *d, const double rays[ETHD_RAYS], double e[ETHD_RAYS], double *radius) ETHD_RT {
+static bool fit(const ethd__drift *d, const double rays[ETHD_RAYS], double e[ETHD_RAYS], double *radius) {
   ethd_finger finger;
   uint32_t used = 0;
   if (ethd_fit_step(&d->fit, rays, &finger) != ETHD_OK) return false;

@@ -91,7 +91,7 @@ static ethd_status finish(const ethd__tick *t, ethd_command *command) {
 }
 
 ETHD__FP_APART static ethd_status step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
-                                       ethd_trace *trace) ETHD_RT {
+                                       ethd_trace *trace) {
   ethd_trace own;
   ethd__tick t;
   t.soft = take_clear(control);
@@ -108,7 +108,7 @@ ETHD__FP_APART static ethd_status step(ethd_control *control, const ethd_sense *
 }
 
 ETHD__FP_APART static ethd_status step_between_modes(ethd_control *control, const ethd_sense *sense,
-                                                     ethd_command *command, ethd_trace *trace) ETHD_RT {
+                                                     ethd_command *command, ethd_trace *trace) {
   const uint64_t callers = ethd__fp_take();
   const ethd_status status = step(control, sense, command, trace);
   ethd__fp_give(callers);
@@ -120,8 +120,7 @@ ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, et
   return ethd__fp_is_own() ? step(control, sense, command, trace) : step_between_modes(control, sense, command, trace);
 }
 
-ETHD__FP_APART static ethd_status rehearse(ethd_control *control, const ethd_sense *sense,
-                                           ethd_command *command) ETHD_RT {
+ETHD__FP_APART static ethd_status rehearse(ethd_control *control, const ethd_sense *sense, ethd_command *command) {
   ethd_trace own;
   ethd__tick t;
   memcpy(&control->scratch, &control->state, sizeof control->scratch);

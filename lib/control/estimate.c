@@ -78,7 +78,7 @@ static ethd_vec ring_at(const ethd__state *state, int64_t time_ns) {
 /* ---- the finger's readings ---- */
 
 /* Returns what the reading is relative to: where the ring stood when it was taken, as the filter's `reference` says. */
-static ethd_vec reference(const ethd__tick *t) ETHD_RT {
+static ethd_vec reference(const ethd__tick *t) {
   if (t->plan->filter.reference == ETHD_REFERENCE_TICK) return t->ring.x;
   if (t->sense->have & ETHD_HAVE_RING) return ethd_vec_of(t->sense->ring);
   return ring_at(t->state, t->sense->sample_ns);
@@ -93,7 +93,7 @@ static ethd_vec relative_velocity(const ethd__tick *t) {
   return ethd_vec_sub(ethd_vec_of(t->state->filter.v), ring_v);
 }
 
-static ethd_status fit(const ethd__tick *t, ethd_finger *out) ETHD_RT {
+static ethd_status fit(const ethd__tick *t, ethd_finger *out) {
   const ethd__plan *plan = t->plan;
   if (plan->lag_least == plan->lag_most || !t->state->filter.started)
     return ethd_fit_step(&plan->fit, t->sense->rays, out);
@@ -105,7 +105,7 @@ static bool is_world(const ethd__tick *t) {
 }
 
 /* Gives this tick's reading, relative to the ring, or in R_0 if it came in R_0; false: it isn't usable. */
-static bool reading(const ethd__tick *t, ethd_vec *out) ETHD_RT {
+static bool reading(const ethd__tick *t, ethd_vec *out) {
   if (t->sense->have & ETHD_HAVE_CENTRE) {
     *out = ethd_vec_of(t->sense->centre);
     return fabs(out->x) <= ETHD_SENSE_LENGTH_MAX && fabs(out->y) <= ETHD_SENSE_LENGTH_MAX;
@@ -165,7 +165,7 @@ static void correct(const ethd__tick *t) {
 
 /* ---- the finger ---- */
 
-static void filter(const ethd__tick *t) ETHD_RT {
+static void filter(const ethd__tick *t) {
   const ethd_filter *method = &t->plan->filter;
   ethd_filter_state *s = &t->state->filter;
   if (t->sense->have & ETHD_HAVE_START)
@@ -177,7 +177,7 @@ static void filter(const ethd__tick *t) ETHD_RT {
 }
 
 /* A finger that was never seen is taken to be in the ring's centre and to move with it: there is nothing to follow. */
-static void finger(ethd__tick *t) ETHD_RT {
+static void finger(ethd__tick *t) {
   t->finger = t->ring;
   if (t->sense->have & ETHD_HAVE_FINGER) {
     t->finger = (ethd__motion){ethd_vec_of(t->sense->finger), ethd_vec_of(t->sense->finger_v)};

@@ -32,7 +32,7 @@ static double room(const ethd__tick *t, int i, double g) {
 
 /* Returns how long ago the finger was where its estimate has it: a filter that doesn't compensate the readings' age
    shows what they showed. */
-static double finger_age(const ethd__tick *t) ETHD_RT {
+static double finger_age(const ethd__tick *t) {
   const ethd__state *state = t->state;
   if (t->sense->have & ETHD_HAVE_FINGER) return 0;
   if (!state->filter.started) return (double)NAN;

@@ -29,7 +29,7 @@ static bool advance(ethd__tick *t) {
   return true;
 }
 
-static void fade(ethd__tick *t, double torque[2], ethd__guard_faded *faded) ETHD_RT {
+static void fade(ethd__tick *t, double torque[2], ethd__guard_faded *faded) {
   ethd__state *state = t->state;
   const double swap_time = t->plan->setup.swap_time;
   const double soft = t->soft ? 0 : passed(state->soft, swap_time);

@@ -63,7 +63,7 @@ void ethd__rows_stop(ethd__state *state) {
 }
 
 /* Latches the first fault, which stays; a later ZERO ends a STOP that is still damping. Returns the latched fault. */
-static ethd_fault latch(ethd__state *state, ethd_fault first, int64_t zero) ETHD_RT {
+static ethd_fault latch(ethd__state *state, ethd_fault first, int64_t zero) {
   if (zero) ethd__rows_stop(state);
   if (!state->fault) __atomic_store_n(&state->fault, first, __ATOMIC_RELAXED);
   return (ethd_fault)state->fault;

@@ -49,7 +49,7 @@ static void orphan(ethd__state *state, int i, const ethd__state *old) {
 }
 
 /* Resets the new law's state, and hands it the contact as the old law leaves it after this tick if it can adopt one. */
-static void adopt(const ethd__plan *to, const ethd__slot *was, ethd__slot *slot) ETHD_RT {
+static void adopt(const ethd__plan *to, const ethd__slot *was, ethd__slot *slot) {
   const ethd_transition_law *law = to->setup.transition;
   const double *p = to->setup.transition_p;
   ethd__block_reset(to, &law->law, p, &slot->transition);

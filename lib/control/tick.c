@@ -150,7 +150,7 @@ static void work_out_torque(ethd__tick *t, double old[2]) {
 
 /* ---- the guard ---- */
 
-static void guard(ethd__tick *t) ETHD_RT {
+static void guard(ethd__tick *t) {
   ethd__state *state = t->state;
   const ethd_limits *limits = &t->plan->setup.limits;
   if (t->plan->has_rare_limits && !reach_is_good(limits->reach, t->pose.x))

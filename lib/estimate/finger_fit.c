@@ -88,8 +88,7 @@ ethd_status ethd__fit_moving(const ethd_fit *fit, const double r[ETHD_RAYS], con
   return finish(fit, &points, out);
 }
 
-ETHD__FP_APART static void fit_rays(double ring_radius, double finger_radius, ethd_vec centre,
-                                    double r[ETHD_RAYS]) ETHD_RT {
+ETHD__FP_APART static void fit_rays(double ring_radius, double finger_radius, ethd_vec centre, double r[ETHD_RAYS]) {
   for (int k = 0; k < ETHD_RAYS; k++) {
     ethd_vec u = {cosines[k / 2][k % 2], sines[k / 2][k % 2]};
     double along = ethd_vec_dot(u, centre), across = ethd_vec_cross(u, centre);

@@ -28,7 +28,7 @@ static void count(ethd_guard_state *s, int32_t bits) {
 
 /* Counts steep ticks and stops the ring after too many in a row. Steepness is judged on the torque that was asked for,
    so one step that the rate limiter spreads over many ticks is steep only once. */
-static int32_t steep(const ethd_limits *limits, ethd_guard_state *s, double dt, const double torque[2]) ETHD_RT {
+static int32_t steep(const ethd_limits *limits, ethd_guard_state *s, double dt, const double torque[2]) {
   double most = limits->torque_rate * dt * (1 + 1e-9);
   bool too_steep = fabs(torque[0] - s->asked[0]) > most || fabs(torque[1] - s->asked[1]) > most;
   s->steep = too_steep ? s->steep + 1 : 0;
@@ -95,7 +95,7 @@ int32_t ethd__guard_finish(const ethd_limits *limits, ethd_guard_state *s, const
 }
 
 ETHD__FP_APART static int32_t both_halves(const ethd_limits *limits, const ethd_guard_device *device,
-                                          ethd_guard_state *s, const ethd_guard_motion *m, double torque[2]) ETHD_RT {
+                                          ethd_guard_state *s, const ethd_guard_motion *m, double torque[2]) {
   const int32_t bits = ethd__guard_limit(limits, device, s, m, torque);
   return ethd__guard_finish(limits, s, NULL, m->dt, bits, torque);
 }

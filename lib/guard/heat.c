@@ -11,7 +11,7 @@
 #define FOLD 0.9     /* the last tenth of the heat is where the torque folds back */
 #define LOAD_MAX 1e3 /* times the nominal torque: no motor lives through more, and the model's heat stays finite */
 
-ETHD__FP_APART static double heat(const ethd_limits *limits, ethd_guard_state *s, double dt) ETHD_RT {
+ETHD__FP_APART static double heat(const ethd_limits *limits, ethd_guard_state *s, double dt) {
   double share = 1 - ethd_exp(-dt / limits->heat_time);
   for (int i = 0; i < 2; i++) {
     double load = fmin(fabs(s->last[i]) / limits->nominal_torque, LOAD_MAX);

@@ -49,7 +49,7 @@ static double reaction(const ethd_guard_device *d, bool estimated) {
   return d->delay + d->period + (estimated ? d->lag : 0);
 }
 
-ETHD__FP_APART static double damping(const ethd_guard_device *d, double mass, bool estimated) ETHD_RT {
+ETHD__FP_APART static double damping(const ethd_guard_device *d, double mass, bool estimated) {
   return mass / (E * reaction(d, estimated));
 }
 

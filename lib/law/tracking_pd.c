@@ -19,7 +19,7 @@ typedef struct pd_state {
 
 _Static_assert(sizeof(pd_state) <= ETHD_STATE_MAX, "state");
 
-static double difference(pd_state *s, const ethd_tracking_in *in, int i) ETHD_RT {
+static double difference(pd_state *s, const ethd_tracking_in *in, int i) {
   double d = s->started != 0 ? (in->eps_q[i] - s->eps_q[i]) / in->period : 0;
   s->eps_q[i] = in->eps_q[i];
   return d;

@@ -29,7 +29,7 @@ static void add_time(ethd__offset *s, double period) {
   s->braked = sum;
 }
 
-static void brake(const double *p, ethd__offset *s, const ethd_contact *c) ETHD_RT {
+static void brake(const double *p, ethd__offset *s, const ethd_contact *c) {
   add_time(s, c->period);
   if (fabs(c->v) < p[ETHD__V_TH])
     ethd__offset_enter(s, ETHD_VO, -c->d_re);

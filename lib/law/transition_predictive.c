@@ -56,7 +56,7 @@ typedef struct predictive_state {
 _Static_assert(sizeof(predictive_state) <= ETHD_STATE_MAX, "state");
 
 static double least(double a, double b) { return a < b ? a : b; }
-static double most(double a, double b) ETHD_RT { return a > b ? a : b; }
+static double most(double a, double b) { return a > b ? a : b; }
 static double within(double x, double low, double high) { return least(most(x, low), high); }
 
 static ethd__ring_ability ability_of(const double *p, const ethd_contact *c) {
@@ -81,7 +81,7 @@ static void observe(const double *p, predictive_state *s, const ethd_contact *c,
 }
 
 /* Returns the distance between finger and rim along n now, m. */
-static double clearance(const ethd_contact *c) ETHD_RT {
+static double clearance(const ethd_contact *c) {
   double lag = c->d_re - c->d_fr + c->v_f * c->facts->finger_age;
   return c->facts->ring_radius - c->facts->finger_radius - lag;
 }
@@ -101,7 +101,7 @@ static bool meets_curve(const double *p, const predictive_state *s, const ethd_c
 
 /* Reduces the finger's lead over the ring, by a shift, to what leaves the ring room to stop. */
 static void approach(const double *p, const predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m,
-                     ethd_ruling *out) ETHD_RT {
+                     ethd_ruling *out) {
   const ethd_facts *f = c->facts;
   double late = c->v_f * f->finger_age, gap = f->ring_radius - f->finger_radius;
   double stop = c->v_f * c->v_f / (2 * m->curve.a) + c->v_f * (ethd__known(f->delay) + c->period) + p[MARGIN];

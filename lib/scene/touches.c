@@ -153,8 +153,7 @@ static const ethd__object *object_of(const ethd_scene *scene, int32_t id) {
   return ethd__object_at(scene, places[low]);
 }
 
-ETHD__FP_APART static void follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from,
-                                  ethd_touch *out) ETHD_RT {
+ETHD__FP_APART static void follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from, ethd_touch *out) {
   const ethd__object *o = object_of(scene, object);
   if (ethd__has_tree(o))
     follow_strip(scene, o, x, from, out);

@@ -19,7 +19,7 @@ static ethd_status worse(ethd_status a, ethd_status b) {
   return a ? a : b;
 }
 
-static ethd_status read_all(const ethd_device *d, int64_t now_ns, ethd_sense *out) ETHD_RT {
+static ethd_status read_all(const ethd_device *d, int64_t now_ns, ethd_sense *out) {
   ethd_status status = ETHD_OK;
   for (uint32_t i = 0; i < d->count; i++)
     if (d->at[i].driver->read) status = worse(status, d->at[i].driver->read(d->at[i].state, now_ns, out));

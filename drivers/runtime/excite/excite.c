@@ -43,7 +43,7 @@ typedef struct excite {
 
 /* ---- sines ---- */
 
-static double sines(const excite *e, int joint, double t) ETHD_RT {
+static double sines(const excite *e, int joint, double t) {
   double sum = 0;
   for (int i = 0; i < LINES; i++) sum += ethd_sin(fmod(e->w[joint][i] * t, TAU) + e->phase[joint][i]);
   return sum;

@@ -138,7 +138,7 @@ static bool read_device(ethd_loop *l) {
 }
 
 /* The share of the torque that the device gets. Periods that a slow bus leaves without a step count as well. */
-static double share(ethd_loop *l) ETHD_RT {
+static double share(ethd_loop *l) {
   if (l->ramp) l->ramp += l->sense.missed;
   double t = (double)l->ramp++ * l->def.period;
   return t < l->def.soft_start ? t / l->def.soft_start : 1;
@@ -174,7 +174,7 @@ static void end_step(ethd_loop *l) {
   for (;;) (void)!sleep_until(l, ethd__loop_now(l) + 1000000000);
 }
 
-static void step(ethd_loop *l, ethd_command *command) ETHD_RT {
+static void step(ethd_loop *l, ethd_command *command) {
   if (atomic_load_explicit(&l->clear, memory_order_relaxed)) {
     atomic_store_explicit(&l->clear, 0, memory_order_relaxed);
     ethd_control_acknowledge(l->def.control);
@@ -191,7 +191,7 @@ static void step(ethd_loop *l, ethd_command *command) ETHD_RT {
   l->missed = 0;
 }
 
-static void tick(ethd_loop *l) ETHD_RT {
+static void tick(ethd_loop *l) {
   ethd_command command;
   raise(&l->stats.ticks, 1);
   if (!read_device(l)) return;

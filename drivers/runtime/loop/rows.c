@@ -37,7 +37,7 @@ static int64_t overruns(ethd_loop *l) {
 }
 
 /* The application counts its beats; the loop notes the tick at which it saw a new one. */
-static int64_t heartbeat(ethd_loop *l) ETHD_RT {
+static int64_t heartbeat(ethd_loop *l) {
   unsigned beats = atomic_load_explicit(&l->beats, memory_order_relaxed);
   int armed = atomic_load_explicit(&l->armed, memory_order_relaxed);
   if (beats != l->beats_seen || !armed || !l->beat_at) l->beat_at = l->due;
