@@ -59,7 +59,7 @@ do for [i=0:n-1] {
   stats file using (t(0) <= to && strlen(strcol("offset_wall_m")) ? (eps = 1e3*column("offset_wall_m")) : 0, 0) nooutput
   if (eps == eps) {
     set arrow 2 from graph 0.6, second 0 to graph 0.6, second eps heads size screen 0.003,90 front lc rgb "#8a5700" lw 1.6
-    set label 2 sprintf("{/Symbol e} %.2f mm", eps) at graph 0.608, second (eps > 0 && eps < 1.5 ? 0 : eps) offset 0,-0.75 front font "Sans,13" textcolor rgb "#8a5700"
+    set label 2 sprintf("{/Symbol e} %.2f mm", eps) at graph 0.608, second (eps > 0 && eps < 1.5 ? 0 : eps) offset 0,-0.65 front font "Sans,13" textcolor rgb "#8a5700"
   }
   # a tick's box is wider than the tick, so that no seam shows within a state
   plot file using (t(0) + 0.5):(1.15):(1.5):(tint(int(column("state")))) with boxes lc rgb variable fs solid 1 noborder, \

@@ -58,7 +58,7 @@ eval(marks)
 set tmargin at screen 0.925
 set bmargin at screen 0.565
 set format x ""
-set ylabel "position along n, mm" offset 1.2
+set ylabel "position along n, mm" offset 0.2
 set yrange [bottom:top]
 set object 1 rectangle from graph 0, first 0 to graph 1, graph 1 fc rgb "#f3f1ec" fs solid noborder behind
 set label 3 "virtual wall" at graph 0.012, first (top - 0.07*(top - bottom)) textcolor rgb grey font "Sans Italic,13"
@@ -107,7 +107,7 @@ set tmargin at screen 0.195
 set bmargin at screen 0.065
 set format x "%g"
 set xlabel "time from t_{r/vo}, ms" offset 0,0.4
-set ylabel "{/Symbol b}" offset 1.2
+set ylabel "{/Symbol b}" offset 0.2
 set yrange [0:1.1]
 set ytics 0.25
 plot in using (t(0)):"beta" with steps lc rgb "#2e7d4f" lw 2.4 notitle

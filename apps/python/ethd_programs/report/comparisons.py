@@ -31,6 +31,8 @@ def table1(r: Report) -> None:
     if not r.measured or r.beside:
         r.page.put("<p>The simulated device and finger were <b>fitted to the four means of this table</b>, not measured: that they agree is no "
                    "evidence.</p>\n")
+    if r.folder.facts["valid_by_finger"]:
+        r.page.put("<p>Taps of this study are valid by the hand's speed, those of the paper by the ring's: they aren't the same taps.</p>\n")
     r.page.put("<p>The last columns compare the people of %s with the paper's nine taps: the mean of people's means less the paper's (Welch's t "
                "test), and the standard deviation of all taps over the paper's (F test, as if all taps were independent). A small p speaks "
                "against agreement; a large one shows none.</p>\n", r.judged_name)

@@ -1,6 +1,7 @@
 """The outcomes that a study file declares as primary: tested as one family, and how many people they need."""
 from typing import List, Optional, Tuple
 
+from ethd_programs.cli import plural
 from ethd_programs.report.comparisons import Within, corrected, print_tests, test_row, within
 from ethd_programs.report.report import Report
 from ethd_programs.report.statistics import people_needed
@@ -24,7 +25,7 @@ def primary(r: Report) -> None:
     tests = [within(r, *outcome) if outcome else None for outcome in (_outcome(word, r.taps) for word in words)]
     missing = [word for word, test in zip(words, tests) if not test]
     r.page.put("<p>The study file declares %d primary outcome%s before the first tap; its hash, below, covers them. All other tests of this page "
-               "are exploratory.%s</p>\n<p>Exclusions that it declares: %s.</p>\n", len(words), "" if len(words) == 1 else "s",
+               "are exploratory.%s</p>\n<p>Exclusions that it declares: %s.</p>\n", len(words), plural(len(words)),
                f" No taps are there yet for: {', '.join(missing)}." if missing else "", r.folder.facts["exclusions"] or "none")
     made = corrected(tests)
     print_tests(r, made, "Differences of participants' medians. Family of Holm's correction: the primary outcomes", "difference", True)
@@ -34,8 +35,8 @@ def primary(r: Report) -> None:
 
 def print_power(name: str, words: List[str], taps: Taps) -> None:
     level = _LEVEL / len(words)
-    print(f"{name}: {len(taps.people)} participants. How many show each primary outcome with a probability of {100 * _POWER:.0f} % "
-          f"(two-sided p under {level:.4g},\nwhich is 0.05 for {len(words)} outcomes together; paired t test of participants' medians), if people "
+    print(f"{name}: {len(taps.people)} participant{plural(len(taps.people))}. How many show each primary outcome with a probability of {100 * _POWER:.0f} % "
+          f"(two-sided p under {level:.4g},\nwhich is 0.05 for {len(words)} outcome{plural(len(words))} together; paired t test of participants' medians), if people "
           "differ as these do:\n\noutcome                            unit  with both        mean          sd     d_z  participants")
     for word in words:
         outcome = _outcome(word, taps)

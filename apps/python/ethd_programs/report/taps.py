@@ -3,7 +3,7 @@ import math
 import re
 from array import array
 from dataclasses import dataclass, field
-from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +42,7 @@ class Cell:
     person: NDArray[np.int64]  #: an index of Taps.people
     row: NDArray[np.int64]  #: of the table, from 0
     name: NDArray[np.str_]  #: of the tap's recording
-    figures: Dict[str, Numbers]  #: by column of the table
+    figures: Dict[str, Numbers]  #: by column of the table; and delay_s
 
     @property
     def label(self) -> str:
@@ -74,7 +74,11 @@ class Quantity:
     title: str
     unit: str
     digits: int
-    of: Callable[[Dict[str, Numbers]], Numbers]
+    source: str  #: the column of the taps
+    scale: float = 1
+
+    def of(self, figures: Dict[str, Numbers]) -> Numbers:
+        return self.scale * figures[self.source]
 
     @property
     def column(self) -> str:
@@ -82,26 +86,18 @@ class Quantity:
         return f"{self.key}_{self.unit.replace('/', 'p')}"
 
 
-def _milli(column: str) -> Callable[[Dict[str, Numbers]], Numbers]:
-    return lambda t: 1e3 * t[column]
-
-
-def _plain(column: str) -> Callable[[Dict[str, Numbers]], Numbers]:
-    return lambda t: t[column]
-
-
 QUANTITIES = {q.key: q for q in (
-    Quantity("v_rvo", "Ring's speed as it meets the wall", "m/s", 3, _plain("v_rvo_mps")),
-    Quantity("v_of", "Ring's speed as the finger touches it", "m/s", 3, _plain("v_of_mps")),
-    Quantity("d_max", "First rebound", "mm", 3, _milli("d_max_m")),
-    Quantity("v_rmin", "Ring's smallest speed after the touch", "m/s", 3, _plain("v_rmin_mps")),
-    Quantity("delta_s", "Time of braking", "ms", 2, _plain("delta_s_ms")),
-    Quantity("eps", "Offset of the wall", "mm", 3, _milli("eps_m")),
-    Quantity("delay", "Touch felt after it is seen", "ms", 1, lambda t: 1e3 * (t["t_of_s"] - t["t_seen_s"])),
-    Quantity("peak_force", "Largest force that the wall asks for", "N", 2, _plain("peak_force_n")),
-    Quantity("v_hand", "Hand's own speed at the touch plane", "m/s", 3, _plain("v_hand_mps")),
-    Quantity("touch_depth", "Ring behind the wall at the touch", "mm", 3, _milli("touch_depth_m")),
-    Quantity("eps_felt", "Offset of the wall 60 ms after the touch", "mm", 3, _milli("eps_felt_m")),
+    Quantity("v_rvo", "Ring's speed as it meets the wall", "m/s", 3, "v_rvo_mps"),
+    Quantity("v_of", "Ring's speed as the finger touches it", "m/s", 3, "v_of_mps"),
+    Quantity("d_max", "First rebound", "mm", 3, "d_max_m", 1e3),
+    Quantity("v_rmin", "Ring's smallest speed after the touch", "m/s", 3, "v_rmin_mps"),
+    Quantity("delta_s", "Time of braking", "ms", 2, "delta_s_ms"),
+    Quantity("eps", "Offset of the wall", "mm", 3, "eps_m", 1e3),
+    Quantity("delay", "Touch felt after it is seen", "ms", 1, "delay_s", 1e3),
+    Quantity("peak_force", "Largest force that the wall asks for", "N", 2, "peak_force_n"),
+    Quantity("v_hand", "Hand's own speed at the touch plane", "m/s", 3, "v_hand_mps"),
+    Quantity("touch_depth", "Ring behind the wall at the touch", "mm", 3, "touch_depth_m", 1e3),
+    Quantity("eps_felt", "Offset of the wall 60 ms after the touch", "mm", 3, "eps_felt_m", 1e3),
 )}
 
 
@@ -155,6 +151,13 @@ class Taps:
 # ---- reading ----
 
 
+def _real(cell: str) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return NAN
+
+
 class _Reader:
     """Takes the rows of a table into cells, point by point."""
 
@@ -177,10 +180,7 @@ class _Reader:
             raise self.refuse(row, column, cell, "a number") from None
 
     def point(self, row: int, cell: str) -> int:
-        try:
-            point = float(cell or 0)
-        except ValueError:
-            point = NAN
+        point = _real(cell or "0")
         if not 0 <= point <= _POINTS:
             raise self.refuse(row, "point", cell, "a point of the grid")
         return int(point)
@@ -189,10 +189,7 @@ class _Reader:
         known = self.speeds.get(word)
         if known:
             return Speed(word, known["centre_mps"], known["band_mps"])
-        try:
-            v = float(word)
-        except ValueError:
-            v = NAN
+        v = _real(word)
         if not 0.01 <= v <= 2:
             raise self.refuse(row, "speed", word, "low, high or a number, in 64 cells,")
         return Speed(word, v, 0.04 + 0.1 * v)
@@ -241,10 +238,12 @@ class _Reader:
             (row, k, p) for k, (_, plain, _) in enumerate(lists.values()) for row, p in zip(plain["row"], plain["participant"]))))
         index = {p: i for i, p in enumerate(everybody)}
         taps.people = everybody
-        for (law, _), (speed, plain, figures) in lists.items():
+        for (law, _), (speed, plain, lists_of) in lists.items():
+            figures = {c: np.array(v) for c, v in lists_of.items()}
+            figures["delay_s"] = figures["t_of_s"] - figures["t_seen_s"]
             taps.cells.append(Cell(law, speed, np.array(plain["reason"]), np.array(plain["by_ring"]), np.array(plain["by_finger"]),
                                    np.array(plain["hand"]), np.array([index[p] for p in plain["participant"]]), np.array(plain["row"]),
-                                   np.array(plain["name"]), {c: np.array(v) for c, v in figures.items()}))
+                                   np.array(plain["name"]), figures))
         taps.cells.sort(key=lambda c: (c.speed.centre, _ORDER.index(c.law) if c.law in _ORDER else len(_ORDER), c.law))
         return taps
 
