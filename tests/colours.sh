@@ -37,8 +37,9 @@ def judge(script, colours, least):
         failed |= distance < least
 
 # pieces of a bar that may lie beside each other: any two, since a reason may be missing; dots of participants: the first
-# four, beyond which the lines help
-for script, name, first, least in (("report-reasons.gp", "tints", 8, 14), ("report-boxes.gp", "who", 4, 16)):
+# four, beyond which the lines help; strategies; states
+for script, name, first, least in (("report-reasons.gp", "tints", 8, 14), ("report-boxes.gp", "who", 4, 16), ("report-boxes.gp", "laws", 4, 20),
+                                   ("report-states.gp", "states", 3, 16)):
     colours = array(script, name)[:first]
     assert len(colours) == first
     judge(script, colours, least)

@@ -45,6 +45,7 @@ assert {k: facts[k] for k in wanted} == wanted, facts
 assert facts["speeds"]["high"] == {"centre_mps": 0.4, "band_mps": 0.03373} and len(facts["questions"]) == 3 and len(facts["hash"]) == 64, facts
 for law in facts["strategies"]:
     rows = list(csv.DictReader(open(os.path.join(sys.argv[1], f"encounter-{law}.csv"))))
+    assert law == "smooth" or max(float(r["offset_wall_m"] or 0) for r in rows) > 1e-3, "the offset is too small to be seen"
     assert len(rows) == 900 and max(float(r["pad_force_N"]) for r in rows) > 1 > float(rows[-1]["pad_force_N"]), law
 END
 "$study" --describe "$here" --out "$folder/facts" >"$folder/out" 2>&1 && fail "--describe writes over facts"

@@ -34,7 +34,8 @@ set output out
 
 grey = "#7a7a7a"
 # strategies keep their colours; others take the last
-tint(law) = law eq "smooth" ? 0x5b7fa6 : law eq "offset" ? 0xc0652b : law eq "abrupt" ? 0x7a9a55 : 0x8a6aa8
+array laws[4] = [0x4f86c0, 0xb4531a, 0xb5c44a, 0x2f1f45]
+tint(law) = laws[law eq "smooth" ? 1 : law eq "offset" ? 2 : law eq "abrupt" ? 3 : 4]
 # eight participants can be told apart (after Okabe and Ito; tests/colours.sh); more are grey
 array who[8] = [0x0072b2, 0xe69f00, 0x000000, 0xcc79a7, 0x009e73, 0xd55e00, 0x56b4e9, 0x8c6d1f]
 colour(person) = people + 0 > 0 && people + 0 <= 8 ? who[int(person) + 1] : 0x555555

@@ -21,7 +21,8 @@ if (!exists("to")) {
 if (exists("svg")) { set terminal svg size 1200,high font "DejaVu Sans,15" background "#ffffff" } else { set terminal pngcairo size 1200,high font "Sans,15" background "#ffffff" }
 set output out
 grey = "#7a7a7a"
-tint(k) = k == 0 ? 0xdfe9f3 : k == 1 ? 0xf6c99a : 0xe3d3e8
+array states[3] = [0xedf4f9, 0xf6c07a, 0xd3c2e3]
+tint(k) = states[k + 1]
 set border 3 lc rgb grey
 set tics nomirror textcolor rgb "#333333" scale 0.6
 set xrange [from:to]
