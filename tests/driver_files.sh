@@ -124,7 +124,7 @@ checked() { # NAME EXIT PATTERN [--open]
   fi
 }
 checked driver_hangs 0 'hello, .*driver_hangs.so: read, not touched'
-checked driver_hangs 0 'checks no setting, before it is open'
+checked driver_hangs 0 'checks no setting before it is open'
 checked driver_hangs 1 "open of the driver broken doesn't return" --open
 checked driver_exits 0 'hello, .*driver_exits.so: read, not touched'
 checked driver_exits 1 'open of the driver broken ended the program' --open
@@ -154,7 +154,7 @@ words 'file:hello.so' 'hang_time = 0\n' 'bad.ini:3: device.hang_time: found "0",
 "$bin/ethd-check" --driver "$work/hello.so" >"$work/out" 2>&1 || fail "laws: $(cat "$work/out")"
 laws=$(realpath "$bin/ethd-check")
 (cd "$work" && "$laws" --driver hello.so) >"$work/out" 2>&1 || fail "laws, beside the file: $(cat "$work/out")"
-grep -qx "device hello: two motors that aren't there, to copy from" "$work/out" || fail "laws: $(cat "$work/out")"
+grep -qx "device hello: two simulated motors; an example to copy" "$work/out" || fail "laws: $(cat "$work/out")"
 "$bin/ethd-check" --driver "$BUILD/tests/plugins/driver_abi.so" >"$work/out" 2>"$work/err"
 [ $? = 2 ] && grep -q 'built for version 77' "$work/err" || fail "laws: $(cat "$work/err")"
 "$bin/ethd-check" --drivers --csv "$work/drivers.csv" >"$work/out" 2>&1 || fail "laws: $(cat "$work/out")"

@@ -41,7 +41,7 @@ printf "$script" | "$run" --virtual --duration 3 --config "$work/commanded.ini" 
   fail "replaying with commands: $(cat "$work/out")"
 cmp "$work/faulty/tick.npy" "$work/again/tick.npy" || fail "the session that was commanded again differs"
 [ "$(rows "$work/out" 'compared commands')" = "$(rows "$work/out" 'recorded ticks')" ] || fail "not all is compared: $(cat "$work/out")"
-grep -q '^device: tick 70[0-9] of the recording was commanded: transition smooth; ' "$work/out" || fail "no remark: $(cat "$work/out")"
+grep -q '^device: tick 70[0-9] of the recording had the command transition smooth; ' "$work/out" || fail "no remark: $(cat "$work/out")"
 # without them it differs from there on
 "$run" --virtual --duration 3 --config "$work/commanded.ini" </dev/null >"$work/out" 2>&1
 status=$?

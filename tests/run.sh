@@ -242,8 +242,8 @@ cp "$folder/wall.scene" "$folder/own"
 cp "$folder/own/config.ini" "$folder/before"
 (cd "$folder/own" && "$run" --virtual --duration 1 --config config.ini --record . --force </dev/null) >"$folder/out" 2>&1 &&
   fail "recorded over its own configuration"
-says "$folder/out" 'what is recorded comes from this folder'
-refuse 'own: holds files of these names, but no recording' --virtual --duration 1 --record "$folder/own" --force
+says "$folder/out" 'the recorded input comes from this folder'
+refuse 'own: holds files named like those of a recording, but no recording' --virtual --duration 1 --record "$folder/own" --force
 cmp "$folder/own/config.ini" "$folder/before" || fail "the configuration was changed"
 # two at once: one records, the other is told
 (sleep 2) | "$run" --virtual --duration 1000000 --record "$folder/two" >"$folder/first" 2>&1 &

@@ -206,10 +206,10 @@ ethd_status ethd__kernel_count_watch(const ethd__counter_calls *calls, const eth
     int edges = s->p[ETHD__COUNTER_STAMPS] != 0 &&
                 !add_watch(calls, fd, s->count[k], COUNTER_EVENT_CHANGE_OF_STATE, s->channel[k]);
     if (!index && s->p[ETHD__COUNTER_HOME] != 0)
-      return ethd__say(message, ETHD_E_DEVICE, "%s: count %d has no index event: home = yes can't be", s->device[k],
-                       s->count[k]);
+      return ethd__say(message, ETHD_E_DEVICE, "%s: count %d has no index event, so home = yes isn't possible",
+                       s->device[k], s->count[k]);
     if (!edges && s->p[ETHD__COUNTER_STAMPS] != 0)
-      return ethd__say(message, ETHD_E_DEVICE, "%s: count %d has no event for its edges: stamps = yes can't be",
+      return ethd__say(message, ETHD_E_DEVICE, "%s: count %d has no edge event, so stamps = yes isn't possible",
                        s->device[k], s->count[k]);
     watched += index + edges;
   }

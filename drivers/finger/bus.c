@@ -83,9 +83,10 @@ static ethd_status listen_first(ethd__finger_bus *b, char *message) {
     all += (uint64_t)got;
   }
   if (d.counters.frames >= FRAMES) return ETHD_OK;
-  return ethd__say(message, ETHD_E_DEVICE,
-                   "%s: %llu bytes but %llu frames in %g s: is it connected, powered, and %u its baud?", b->port.path,
-                   (unsigned long long)all, (unsigned long long)d.counters.frames, b->patience, b->port.baud);
+  return ethd__say(
+      message, ETHD_E_DEVICE,
+      "%s: %llu bytes but %llu frames in %g s: is the sensor connected and powered, and is its baud rate %u?",
+      b->port.path, (unsigned long long)all, (unsigned long long)d.counters.frames, b->patience, b->port.baud);
 }
 
 ethd_status ethd__finger_bus_prepare(ethd__finger_bus *b, const ethd_device_def *def, const char *port, const double *p,

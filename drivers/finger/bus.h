@@ -9,10 +9,11 @@
 
 /* The settings that such drivers have in common come first in their tables. */
 enum { ETHD__BUS_BAUD, ETHD__BUS_DELAY, ETHD__BUS_PATIENCE, ETHD__BUS_PARAMS };
-#define ETHD__BUS_ROWS                                                                                             \
-  [ETHD__BUS_BAUD] = {"baud", "1/s", 9600, 12e6, 500000, "of the line"},                                           \
-  [ETHD__BUS_DELAY] = {"delay", "s", 0, 0.1, 0.0012, "from a frame's sample to its last byte's earliest arrival"}, \
-  [ETHD__BUS_PATIENCE] = {"patience", "s", 0.05, 60, 2, "for the first frames"}
+#define ETHD__BUS_ROWS                                                                                          \
+  [ETHD__BUS_BAUD] = {"baud", "1/s", 9600, 12e6, 500000, "baud rate of the line"},                              \
+  [ETHD__BUS_DELAY] = {"delay", "s",    0,                                                                      \
+                       0.1,     0.0012, "time from a frame's sample to the earliest arrival of its last byte"}, \
+  [ETHD__BUS_PATIENCE] = {"patience", "s", 0.05, 60, 2, "longest wait for the first frames"}
 
 /* Turns a frame's counts into a reading, which is centre and noise. False: no finger gives such counts. [I/O] */
 typedef bool ethd__bus_means(const void *sensor, const uint16_t counts[ETHD__FRAME_SENSORS], ethd__sighting *out);

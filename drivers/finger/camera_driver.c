@@ -29,9 +29,9 @@ enum { RATE, DELAY, PATIENCE, PARAMS };
 enum { LISTEN, FROM, KEYS };
 
 static const ethd_param params[PARAMS] = {
-    [RATE] = {"rate", "Hz", 1, 10000, 90, "exposures"},
-    [DELAY] = {"delay", "s", 0, 0.5, 0.0111, "from an exposure to the earliest arrival of its datagram"},
-    [PATIENCE] = {"patience", "s", 0.05, 60, 2, "for the first datagram"},
+    [RATE] = {"rate", "Hz", 1, 10000, 90, "rate of the exposures"},
+    [DELAY] = {"delay", "s", 0, 0.5, 0.0111, "time from an exposure to the earliest arrival of its datagram"},
+    [PATIENCE] = {"patience", "s", 0.05, 60, 2, "longest wait for the first datagram"},
 };
 
 static const char *const keys[] = {[LISTEN] = "listen", [FROM] = "from", [KEYS] = NULL};

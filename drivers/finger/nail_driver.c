@@ -15,11 +15,11 @@ enum { PORT, CALIBRATION, KEYS };
 
 static const ethd_param params[PARAMS] = {
     ETHD__BUS_ROWS,
-    [SENSOR] = {"sensor", ETHD_WHOLE, 0, ETHD__FRAME_SENSORS - 1, 0, "which of a frame's counts"},
-    [ANGLE] = {"angle", "rad", -7, 7, 0, "in R_0, from the ring's centre toward the sensor"},
+    [SENSOR] = {"sensor", ETHD_WHOLE, 0, ETHD__FRAME_SENSORS - 1, 0, "number of the sensor in a frame"},
+    [ANGLE] = {"angle", "rad", -7, 7, 0, "direction from the ring's centre to the sensor, in R_0"},
     [REST] = {"rest", "m", 0, 0.1, 5e-3, "distance of the plate when the finger is centred"},
-    [RANGE] = {"range", "m", 1e-4, 0.1, 10e-3, "what is further is no plate"},
-    [NOISE] = {"noise", "m", 1e-7, 0.01, 0.02e-3, "sd of a distance; the step of a count is added"},
+    [RANGE] = {"range", "m", 1e-4, 0.1, 10e-3, "largest distance at which a plate is recognised"},
+    [NOISE] = {"noise", "m", 1e-7, 0.01, 0.02e-3, "sd of a distance, without the step of a count, which is added"},
 };
 
 static const char *const keys[] = {[PORT] = "port", [CALIBRATION] = "calibration", [KEYS] = NULL};
@@ -57,8 +57,8 @@ static ethd_status load(const ethd_device_def *def, const ethd_setting *file, na
 }
 
 static ethd_status check(const ethd_device_def *def, const ethd_setting *texts[KEYS], char *message) {
-  const char *what = !texts[PORT]          ? "port is missing: the sensor's line, as /dev/ttyUSB0"
-                     : !texts[CALIBRATION] ? "calibration is missing: what its counts mean"
+  const char *what = !texts[PORT]          ? "port is missing: the sensor's serial port, as /dev/ttyUSB0"
+                     : !texts[CALIBRATION] ? "calibration is missing: the file from counts to distances"
                                            : NULL;
   if (!what) return ETHD_OK;
   return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.%s", def->file ? def->file : "the defaults", what);
@@ -113,7 +113,7 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
 
 static const char *remark(const void *device, uint32_t i) {
   (void)device;
-  return i ? NULL : "the nail's plate measures along one direction; across it nothing keeps the ring off the finger";
+  return i ? NULL : "the nail's plate measures one direction; across it the ring may touch the finger";
 }
 
 static void nail_close(void *device) {

@@ -11,10 +11,11 @@ enum { ZONES = ETHD__BUS_PARAMS, REACH, SWITCHING, LEVEL, PARAMS };
 
 static const ethd_param params[PARAMS] = {
     ETHD__BUS_ROWS,
-    [ZONES] = {"zones", ETHD_WHOLE, ETHD__ZONES_MIN, ETHD__ZONES_MAX, 12, "light barriers, at counts 0 and up"},
-    [REACH] = {"reach", "m", 1e-4, 0.1, 3.5e-3, "a barrier is lit while the finger is nearer to it"},
-    [SWITCHING] = {"switching", "m", 0, 0.01, 0.1e-3, "sd of the distance at which it switches"},
-    [LEVEL] = {"level", "1", 1, 65535, 32768, "counts of a barrier that is lit, at least"},
+    [ZONES] = {"zones", ETHD_WHOLE, ETHD__ZONES_MIN, ETHD__ZONES_MAX, 12,
+               "number of light barriers, from sensor 0 of a frame on"},
+    [REACH] = {"reach", "m", 1e-4, 0.1, 3.5e-3, "distance of the finger below which a barrier switches on"},
+    [SWITCHING] = {"switching", "m", 0, 0.01, 0.1e-3, "sd of the distance at which a barrier switches"},
+    [LEVEL] = {"level", "1", 1, 65535, 32768, "least counts of a barrier that is on"},
 };
 
 static const char *const keys[] = {"port", NULL};
@@ -44,7 +45,7 @@ static ethd_status zones_prepare(const ethd_device_def *def, void **device, char
   ethd_status status = ethd_settings_read(&ethd_driver_zones, def, p, &port, message);
   if (status) return status;
   if (!port)
-    return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.port is missing: the barriers' line, as /dev/ttyUSB0",
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.port is missing: the barriers' serial port, as /dev/ttyUSB0",
                      def->file ? def->file : "the defaults");
   zones_ring *r = *device = calloc(1, sizeof *r);
   if (!r) return ETHD_E_MEMORY;

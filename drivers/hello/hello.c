@@ -63,7 +63,7 @@ static ethd_limits limits(const void *device) {
 const ethd_driver HELLO = {.size = sizeof(ethd_driver),
                            .abi = ETHD_DRIVER_ABI,
                            .id = "hello",
-                           .brief = "two motors that aren't there, to copy from",
+                           .brief = "two simulated motors; an example to copy",
                            .open = open_hello,
                            .start = start,
                            .read = read_joints,

@@ -170,7 +170,7 @@ static ethd_status read_rest(const script_reader *r, const char *at, const char 
     script_word by = behind(w, "by="), duration = behind(w, "for=");
     status = by.length         ? read_by(r, w, by, out)
              : duration.length ? read_for(r, w, duration, out)
-                               : refuse(r, ETHD_E_SYNTAX, w, "behind the kind stand by=NUMBER and for=SECONDS");
+                               : refuse(r, ETHD_E_SYNTAX, w, "by=NUMBER and for=SECONDS are allowed after the kind");
   }
   if (!status && kinds[out->kind].by && isnan(out->by))
     status = refuse(r, ETHD_E_ARGUMENT, (script_word){at, 0}, "this kind needs by=NUMBER");

@@ -167,9 +167,9 @@ static ethd_status prepare(const ethd_device_def *def, ring *r, char *message) {
 static ethd_status no_frames(const ring *r, const ethd__decoder *d, uint64_t bytes, char *message) {
   double seconds = r->settings.p[ETHD__RING_PATIENCE];
   if (!bytes)
-    return ethd__say(message, ETHD_E_DEVICE, "%s: nothing came in %g s: is the ring connected and powered?",
-                     r->port.path, seconds);
-  return ethd__say(message, ETHD_E_DEVICE, "%s: %llu bytes but %llu frames in %g s: is %u its baud?", r->port.path,
+    return ethd__say(message, ETHD_E_DEVICE, "%s: no bytes in %g s: is the ring connected and powered?", r->port.path,
+                     seconds);
+  return ethd__say(message, ETHD_E_DEVICE, "%s: %llu bytes but %llu frames in %g s: is its baud rate %u?", r->port.path,
                    (unsigned long long)bytes, (unsigned long long)d->counters.frames, seconds, r->port.baud);
 }
 
@@ -271,13 +271,12 @@ static const char *remark(const void *device, uint32_t i) {
   if (drift.is_off)
     snprintf(r->drifted, sizeof r->drifted,
              "the ring's sensors have drifted together: they show the finger's radius about %.1f mm too %s; open the "
-             "empty ring "
-             "anew, or calibrate it (step 6)",
+             "empty ring again, or calibrate it (step 6)",
              1e3 * fabs(drift.offset), drift.offset > 0 ? "large" : "small");
   pthread_mutex_unlock(&r->lock);
   const char *said[4] = {NULL};
   uint32_t n = 0;
-  if (!at_once) said[n++] = "the ring's port doesn't know low latency: its bytes may come up to 16 ms late (step 1)";
+  if (!at_once) said[n++] = "the ring's port has no low-latency mode: its bytes may arrive up to 16 ms late (step 1)";
   if (r->receiver.calibration.level == ETHD__LEVEL_NONE)
     said[n++] = "the ring isn't calibrated: distances are a typical sensor's, half a millimetre off (step 6)";
   if (drift.is_off) said[n++] = r->drifted;

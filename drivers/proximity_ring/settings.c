@@ -3,16 +3,17 @@
 #include "text/error_text.h"
 
 const ethd_param ethd__ring_params[ETHD__RING_PARAMS] = {
-    [ETHD__RING_BAUD] = {"baud", "1/s", 9600, 12e6, 500000, "of the board's UART: 500000 or 400000, by its strap"},
+    [ETHD__RING_BAUD] = {"baud", "1/s", 9600, 12e6, 500000,
+                         "baud rate of the board: 500000 or 400000, set by its strap"},
     [ETHD__RING_DELAY] = {"delay", "s", 0, 0.1, 0.0041,
-                          "from the beginning of a frame's sampling to its last byte's earliest arrival"},
+                          "time from the first sample of a frame to the earliest arrival of its last byte"},
     [ETHD__RING_GATE] = {"gate", "m", 1e-5, 0.01, 1.5e-3,
-                         "of a ray from the finger's circle: further off it is left out"},
-    [ETHD__RING_SPEED] = {"speed", "m/s", 0.01, 100, 1, "of a distance: a faster one is left out"},
-    [ETHD__RING_SLACK] = {"slack", "m", 1e-5, 0.01, 0.5e-3, "that a distance may change beyond that speed"},
-    [ETHD__RING_PATIENCE] = {"patience", "s", 0.05, 60, 2, "for the first frames"},
+                         "largest distance of a ray from the finger's circle; a ray further off is left out"},
+    [ETHD__RING_SPEED] = {"speed", "m/s", 0.01, 100, 1, "highest speed of a distance; a faster one is left out"},
+    [ETHD__RING_SLACK] = {"slack", "m", 1e-5, 0.01, 0.5e-3, "change of a distance that is allowed beyond that speed"},
+    [ETHD__RING_PATIENCE] = {"patience", "s", 0.05, 60, 2, "longest wait for the first frames"},
     [ETHD__RING_EMPTY] = {"empty", "check|trust", 0, 1, 0,
-                          "measure the empty ring when it is opened, or trust the file's darks"},
+                          "at the opening: measure the empty ring, or use the dark counts of the calibration"},
 };
 
 const char *const ethd__ring_keys[] = {"port", "calibration", NULL};

@@ -88,7 +88,7 @@ static const char *remark(const void *device, uint32_t i) {
     if (d->inertia[axis][0]) own[n++] = d->inertia[axis];
   if (d->guarded[0]) own[n++] = d->guarded;
   if (d->link.bus.fd >= 0 && !d->link.bus.at_once)
-    own[n++] = "the serial line's driver doesn't hand bytes over at once: answers may come late (FTDI: 1 into "
+    own[n++] = "the serial line's driver holds bytes back: answers may be late (FTDI: 1 into "
                "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer; step 1)";
   if (d->map.transport == ETHD__SERVO_RTU && !(d->map.turnaround > 0))
     own[n++] = "bus.turnaround is 0: ethd-conform --probe measures how long the drive takes to answer (step 3)";

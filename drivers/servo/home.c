@@ -70,7 +70,7 @@ static ethd_status find(ethd__servo_device *d, int axis) {
 static ethd_status find_all(ethd__servo_device *d) {
   if (d->homing[0].method == ETHD__HOMING_JIG && d->homing[1].method == ETHD__HOMING_JIG)
     return ethd__say(d->link.message, ETHD_E_ARGUMENT,
-                     "device.home is jig: stand the arm in it, and say where its joints are");
+                     "device.home is jig: put the arm into the jig, and give its joint angles");
   ethd_status status = ethd__servo_enable(d);
   d->feedback.homing = true; /* a joint that stands under torque is no fault here */
   for (int i = 0; i < 2 && !status; i++)

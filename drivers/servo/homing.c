@@ -50,16 +50,18 @@ ethd_status ethd__homing_turn(const ethd__homing_def *def, ethd__homing *h, doub
   measure(def, h, q, dt);
   if (def->method == ETHD__HOMING_INDEX && mark) return ETHD_OK;
   if (fabs(h->v) > AWAY_FROM * def->speed)
-    return fail(h, "it runs away: its encoder counts the other way round, or its torque does");
+    return fail(h, "it runs away: the sign of its encoder or of its torque is wrong");
   if (h->time > PATIENCE) return fail(h, "neither stop nor mark within a minute");
   double asked = torque_towards(def, h, (h->towards ? 1 : -1) * def->direction * def->speed, dt);
   bool stood = stands(def, h, asked, dt);
   if (!h->towards && (stood || h->travel >= AWAY))
     turn_round(h);
   else if (stood && def->method == ETHD__HOMING_INDEX)
-    return fail(h, "it stands before its index mark has passed");
+    return fail(h, "it stopped before its index mark");
   else if (stood)
-    return h->travel >= AWAY / 2 ? ETHD_OK : fail(h, "it doesn't move: encoder, motor, or torque under its friction");
+    return h->travel >= AWAY / 2
+               ? ETHD_OK
+               : fail(h, "it doesn't move: the encoder or motor is broken, or the torque is under its friction");
   *torque = asked;
   return ETHD_STATUS_BUSY;
 }

@@ -36,7 +36,7 @@ ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double
   int64_t begin = ethd__clock_now();
   bool may_push = d->link.state == ETHD__SERVO_ENABLED || d->link.sequence == ETHD__SERVO_ENABLE;
   if (!ethd__guardian_enter(&d->guardian, begin, d->link.bus.fd, d->link.counts.connects))
-    ethd__servo_link_lose(&d->link, "the guardian has taken the line: this program was silent for too long", now_ns);
+    ethd__servo_link_lose(&d->link, "the guardian has taken the line: this program was silent too long", now_ns);
   ethd__guardian_arm(&d->guardian, may_push && !d->is_virtual); /* a virtual clock may stand still */
   ethd_status status = ethd__servo_link_turn(&d->link, now_ns, torque);
   int64_t took = ethd__clock_now() - begin;

@@ -50,7 +50,8 @@ static bool unit_is(const ethd__servo_register *r, const char *words) {
 static ethd_status check_unit(const ethd__key_file *s, const ethd__servo_register *r) {
   if (unit_is(r, "A") && !(r->torque_constant > 0))
     return refuse(s, r, "torque_constant", "is missing: unit = A needs it");
-  if (unit_is(r, "count|count/s") && !(r->counts > 0)) return refuse(s, r, "counts", "is missing: counts a motor turn");
+  if (unit_is(r, "count|count/s") && !(r->counts > 0))
+    return refuse(s, r, "counts", "is missing: counts for each turn of the motor");
   if (unit_is(r, "count") && (r->counts != rint(r->counts) || r->scale != 1 || r->offset != 0))
     return refuse(s, r, "counts", "a counter has whole counts, scale = 1 and offset = 0");
   if (r->role < 0) return ETHD_OK;
@@ -67,7 +68,7 @@ static bool is_counter(const ethd__servo_register *r) {
 
 static ethd_status check_words(const ethd__key_file *s, const ethd__servo_register *r) {
   if (r->type >= ETHD__SERVO_U32 && r->order == ETHD__SERVO_NO_ORDER)
-    return refuse(s, r, "order", "is missing: high-first or low-first, as two words need it");
+    return refuse(s, r, "order", "is missing: two words need high-first or low-first");
   if (r->direction == W && r->space == ETHD__SERVO_INPUT)
     return refuse(s, r, "space", "an input register can't be written, holding is allowed");
   if (r->type != ETHD__SERVO_F32 && r->bits > 16 * ethd__servo_words(r))
@@ -184,7 +185,7 @@ static ethd_status check_every(const ethd__key_file *s, const ethd__servo_map *m
                r->role == ETHD__SERVO_BUS_VOLTAGE || r->role == ETHD__SERVO_INDEX1 || r->role == ETHD__SERVO_INDEX2;
     if (r->every > 1 && (r->direction != R || !may || is_echo(map, (int32_t)i)))
       return refuse(s, r, "every",
-                    "only measured torques, index marks, bus_voltage and masks are read less often, echoes aren't");
+                    "only measured torques, index marks, bus_voltage and masks may be read less often, and no echoes");
   }
   return ETHD_OK;
 }
@@ -194,10 +195,9 @@ static ethd_status check_use(const ethd__key_file *s, ethd__servo_map *map) {
     ethd__servo_register *r = &map->registers[i];
     r->cyclic |= r->role >= 0 || r->fault_mask || r->enabled_mask;
     if (!r->cyclic && !in_steps(map, i))
-      return ethd__say(
-          s->message, ETHD_E_UNKNOWN,
-          "%s:%d: register %s: nothing uses it: it has no meaning of its own, no mask, no step and is no echo", s->name,
-          r->line, r->name);
+      return ethd__say(s->message, ETHD_E_UNKNOWN,
+                       "%s:%d: register %s: nothing uses it: it has no known name, no mask, no step and is no echo",
+                       s->name, r->line, r->name);
   }
   return ETHD_OK;
 }

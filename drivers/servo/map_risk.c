@@ -69,7 +69,7 @@ const char *ethd__servo_risk(const ethd__servo_map *map, uint32_t i) {
   }
   if (map->roles[ETHD__SERVO_BUS_VOLTAGE] < 0) risks[n++] = "no bus_voltage: the supply isn't watched";
   if (any_mask(map) && !map->sequences[ETHD__SERVO_CLEAR].count)
-    risks[n++] = "no [clear] steps: a fault of the drive's is left only as its manual says";
+    risks[n++] = "no [clear] steps: only the procedure of its manual ends a fault of the drive";
   if (!map->sequences[ETHD__SERVO_DISABLE].count) risks[n++] = "no [disable] steps: a stop only writes zero torque";
   return i < n ? risks[i] : NULL;
 }

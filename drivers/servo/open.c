@@ -11,19 +11,21 @@
 #include "text/text.h"
 
 const ethd_param ethd__servo_params[ETHD__SERVO_PARAMS] = {
-    [ETHD__SERVO_Q1] = {"q1", "rad", -100, 100, 0,
-                        "joint 1 in the jig, at the stop or at the mark; in the jig when the device is opened"},
-    [ETHD__SERVO_Q2] = {"q2", "rad", -100, 100, 0, "the same of joint 2"},
-    [ETHD__SERVO_JOINT] = {"joint", "1|2", 0, 1, 0, "of a map with one axis: which joint that is"},
-    [ETHD__SERVO_SPEED] = {"speed", "m/s", 0.01, 10, 1.2, "of the ring: faster is row 24 of the fault table"},
+    [ETHD__SERVO_Q1] = {"q1", "rad", -100, 100, 0, "angle of joint 1 in the jig, at the stop or at the index mark"},
+    [ETHD__SERVO_Q2] = {"q2", "rad", -100, 100, 0, "angle of joint 2 in the jig, at the stop or at the index mark"},
+    [ETHD__SERVO_JOINT] = {"joint", "1|2", 0, 1, 0, "joint of a map that has one axis"},
+    [ETHD__SERVO_SPEED] = {"speed", "m/s", 0.01, 10, 1.2,
+                           "highest speed of the ring; above it the fault table's row 24 is met"},
     [ETHD__SERVO_HOME] = {"home", "jig|stop|index", 0, 2, 0,
-                          "how the joints are found: by hand in a jig, or by themselves"},
-    [ETHD__SERVO_HOME_SPEED] = {"home_speed", "rad/s", 1e-3, 2, 0.1, "towards stop or mark"},
-    [ETHD__SERVO_HOME_TORQUE] = {"home_torque", "Nm", 0, 100, 0, "at most; 0: 0.15 of the largest"},
-    [ETHD__SERVO_HOME_WAY1] = {"home_way1", "1|-1", 0, 1, 0, "towards joint 1's stop or mark its angle rises or falls"},
-    [ETHD__SERVO_HOME_WAY2] = {"home_way2", "1|-1", 0, 1, 0, "the same of joint 2"},
-    [ETHD__SERVO_UNGUARDED] = {"unguarded", "no|yes", 0, 1, 0,
-                               "enable also where the guardian would end with this program: its torque then stays"},
+                          "how the joints are found: by hand in a jig, or by moving to a stop or an index mark"},
+    [ETHD__SERVO_HOME_SPEED] = {"home_speed", "rad/s", 1e-3, 2, 0.1, "speed towards the stop or mark"},
+    [ETHD__SERVO_HOME_TORQUE] = {"home_torque", "Nm", 0, 100, 0,
+                                 "largest torque of the search; 0: 0.15 of the torque limit"},
+    [ETHD__SERVO_HOME_WAY1] = {"home_way1", "1|-1", 0, 1, 0, "sign of joint 1's motion towards its stop or mark"},
+    [ETHD__SERVO_HOME_WAY2] = {"home_way2", "1|-1", 0, 1, 0, "sign of joint 2's motion towards its stop or mark"},
+    [ETHD__SERVO_UNGUARDED] =
+        {"unguarded", "no|yes", 0, 1, 0,
+         "yes: enable although the guardian would end with this program and the torque would stay"},
 };
 
 const char *const ethd__servo_keys[] = {"map", "port", NULL};
@@ -105,10 +107,9 @@ static void say_coarse(ethd__servo_device *d, double limit) {
     double count = r < 0 ? 0 : ethd__servo_least(&d->map.registers[r]);
     double most = r < 0 ? 0 : fmin(limit, ethd__servo_most(&d->map.registers[r]));
     if (count > most && !d->coarse[0])
-      snprintf(
-          d->coarse, sizeof d->coarse,
-          "one count of torque%d is %.3g Nm at the joint, over the limit of %.3g Nm: the joint never gets a torque",
-          i + 1, count, most);
+      snprintf(d->coarse, sizeof d->coarse,
+               "one count of torque%d is %.3g Nm at the joint, over the limit of %.3g Nm: its torque is always 0",
+               i + 1, count, most);
   }
 }
 
@@ -176,11 +177,10 @@ static void say_guard(ethd__servo_device *d) {
   if (d->unarmed)
     ethd__say(d->guarded, ETHD_OK, "the drive isn't enabled here: %s", d->unarmed);
   else if (ends)
-    ethd__say(
-        d->guarded, ETHD_OK,
-        "device.unguarded is yes, and here the guardian ends with this program: killed, it leaves the torque on for "
-        "ever; when it is only silent, the guardian writes zero within %.3g ms, then disables",
-        bound);
+    ethd__say(d->guarded, ETHD_OK,
+              "device.unguarded is yes, and here the guardian ends with this program: a killed program leaves the "
+              "torque on for ever; when it is only silent, the guardian writes zero within %.3g ms, then disables",
+              bound);
   else
     ethd__say(d->guarded, ETHD_OK,
               "a guardian process writes zero torque within %.3g ms of this program's end or silence, then disables%s",

@@ -63,10 +63,9 @@ static ethd_status open_tcp(const ethd__servo_map *map, int *fd, char *message) 
 static ethd_status open_rtu(const ethd__servo_map *map, int *fd, char *message) {
   ethd_status status = ethd__line_open(map->port, (ethd__line_format)map->format, map->baud, fd, message);
   if (status || !map->rs485 || ethd__line_rs485(*fd, map->rs485 == 1)) return status;
-  return ethd__say(
-      message, ETHD_E_DEVICE,
-      "%s: RTS can't switch its direction (%s): take an adapter that does it by itself, and rs485 = adapter", map->port,
-      strerror(errno));
+  return ethd__say(message, ETHD_E_DEVICE,
+                   "%s: RTS can't switch its direction (%s): use an adapter that switches it, and rs485 = adapter",
+                   map->port, strerror(errno));
 }
 
 /* libmodbus waits in select, which ends the process when a descriptor is FD_SETSIZE or higher. */

@@ -31,7 +31,7 @@ static ethd_status load_plant(const ethd_device_def *def, const ethd_setting *se
   char *path = ethd__plant_path(plant, def->folder);
   ethd_status status = path ? ethd_plant_load(path, out, message) : ethd__no_memory(message, NULL);
   if (path && status == ETHD_E_FILE && !strpbrk(plant, "/.") && access(path, F_OK))
-    (void)ethd__say(message, status, "%s: %s; ETHD_DATA_DIR may name the folder of the plants that are installed", path,
+    (void)ethd__say(message, status, "%s: %s; ETHD_DATA_DIR may name the folder of the installed plants", path,
                     strerror(errno));
   free(path);
   return status;

@@ -8,18 +8,18 @@
 /* clang-format off */
 #define REFERENCE                                                                  \
   [FILTER_REFERENCE] = {"reference", "sample|tick", 0, 1, ETHD_REFERENCE_SAMPLE,   \
-      "where the ring was for a reading: at its sample instant or at this tick"}
+      "the ring's position that a reading is added to: at the reading's sample, or at this tick"}
 #define COMPENSATION                                                               \
   [FILTER_COMPENSATION] = {"compensation", "stamp|none", 0, 1,                     \
       ETHD_COMPENSATION_STAMP, "age of a reading: compensated by its stamp, or ignored"}
 #define LATENCY                                                                    \
   [FILTER_LATENCY] = {"latency", "s", 0, 0.1, 0,                                   \
-      "from the sample to its stamp, compensated as well (stamp only)"}
+      "time from the sample to its stamp, compensated too (only with compensation = stamp)"}
 #define NOISE                                                                      \
-  [FILTER_NOISE] = {"noise", "m", 1e-7, 1e-2, 0.1e-3, "sd of a reading, each axis"}
+  [FILTER_NOISE] = {"noise", "m", 1e-7, 1e-2, 0.1e-3, "sd of a reading, in x and in y"}
 #define GATE                                                                       \
   [FILTER_GATE] = {"gate", "1", 1, INFINITY, 25,                                   \
-      "sd of the innovation over which a reading is dropped; a finger on glass reaches 20"}
+      "innovation, in its standard deviations, above which a reading is dropped; a finger on glass reaches 20"}
 
 static const ethd_param hold[] = {REFERENCE};
 
@@ -28,7 +28,7 @@ static const ethd_param alpha_beta[] = {
     [ALPHA_BETA_ALPHA] = {"alpha", "1", 0.01, 1, 0.5,
         "share of the innovation that moves the position"},
     [ALPHA_BETA_BETA] = {"beta", "1", 0, 2, 0.4,
-        "share of the innovation, per time, that moves the speed"},
+        "share of the innovation, over the time step, that changes the speed"},
 };
 
 static const ethd_param cv[] = {
@@ -39,7 +39,7 @@ static const ethd_param cv[] = {
 static const ethd_param ca[] = {
     REFERENCE, COMPENSATION, LATENCY, NOISE, GATE,
     [FILTER_DRIVE] = {"jerk", "m/s^3", 1e-2, 1e7, 400, "rms jerk of the finger"},
-    [FILTER_MEMORY] = {"memory", "s", 1e-3, INFINITY, 0.08, "how long an acceleration lasts; inf: it stays"},
+    [FILTER_MEMORY] = {"memory", "s", 1e-3, INFINITY, 0.08, "time constant of the acceleration; inf: constant"},
 };
 /* clang-format on */
 
@@ -47,7 +47,7 @@ static const ethd_param ca[] = {
 
 const ethd_method ethd_filter_methods[ETHD_FILTER_COUNT] = {
     [ETHD_FILTER_CA] = {"ca", "Kalman filter of constant acceleration", ROWS(ca)},
-    [ETHD_FILTER_HOLD] = {"hold", "the last reading, at rest", ROWS(hold)},
+    [ETHD_FILTER_HOLD] = {"hold", "last reading, with speed 0", ROWS(hold)},
     [ETHD_FILTER_ALPHA_BETA] = {"alpha-beta", "position and velocity with fixed gains", ROWS(alpha_beta)},
     [ETHD_FILTER_CV] = {"cv", "Kalman filter of constant velocity", ROWS(cv)},
 };

@@ -6,7 +6,7 @@
 
 static const ethd_param robust[] = {
     [ROBUST_GATE] = {"gate", "m", 1e-5, 1e-2, 1.2e-3,
-                     "how far a ray may lie from the circle: its noise and the radius' error"},
+                     "largest distance of a ray from the circle: its noise and the radius' error"},
 };
 
 const ethd_method ethd_fit_methods[ETHD_FIT_COUNT] = {

@@ -10,21 +10,21 @@ static const ethd_param lowpass[] = {
 };
 
 static const ethd_param lsq[] = {
-    [LSQ_WINDOW] = {"window", ETHD_WHOLE, 2, ETHD_VELOCITY_WINDOW_MAX, 8, "samples the line is fitted through"},
+    [LSQ_WINDOW] = {"window", ETHD_WHOLE, 2, ETHD_VELOCITY_WINDOW_MAX, 8, "number of samples in the line's fit"},
 };
 
 static const ethd_param foaw[] = {
     [FOAW_WINDOW] = {"window", ETHD_WHOLE, 2, ETHD_VELOCITY_WINDOW_MAX, 16,
-                     "samples the line is fitted through at most"},
-    [FOAW_NOISE] = {"noise", "rad", 1e-9, 1, 160e-6,
-                    "how far a sample may lie from the line: one encoder count, the most that quantisation makes"},
+                     "largest number of samples in the line's fit"},
+    [FOAW_NOISE] = {"noise", "rad", 1e-9, 1, 160e-6, "largest distance of a sample from the line: one encoder count"},
 };
 
 static const ethd_param kalman[] = {
     [VELOCITY_NOISE] = {"noise", "rad", 1e-9, 1, 46e-6, "sd of a position: an encoder count / sqrt(12)"},
-    [VELOCITY_ACCELERATION] = {"acceleration", "rad/s^2", 1e-3, 1e6, 50,
-                               "rms of what the torque doesn't explain: friction, contacts, wrong inertia"},
-    [VELOCITY_INERTIA] = {"inertia", "kg m^2", 1e-6, 1e3, 0.1173 * 0.0625, "of each joint, mass L^2"},
+    [VELOCITY_ACCELERATION] =
+        {"acceleration", "rad/s^2", 1e-3, 1e6, 50,
+         "rms acceleration that the torque doesn't explain: by friction, contacts, wrong inertia"},
+    [VELOCITY_INERTIA] = {"inertia", "kg m^2", 1e-6, 1e3, 0.1173 * 0.0625, "inertia of each joint: mass L^2"},
 };
 
 #define ROWS(table) table, sizeof table / sizeof *table

@@ -7,7 +7,7 @@ enum { K_E, C_E, COUNT };
 
 static const ethd_param params[COUNT] = {
     {"k_e", "N/m", 0, 1e6, 2500, "stiffness of the wall (K_e)"},
-    {"c_e", "s/m", 0, 1e3, 1, "damping, as a share of the stiffness force per speed"},
+    {"c_e", "s/m", 0, 1e3, 1, "damping: share of the stiffness force for each m/s"},
 };
 
 static ethd_status step(const double *p, void *block, double gap, double speed, int entering, double *force) ETHD_RT {

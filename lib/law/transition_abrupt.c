@@ -14,8 +14,8 @@ static ethd_status step(const double *p, void *block, const ethd_contact *c, eth
 }
 
 const ethd_transition_law ethd_transition_abrupt = {
-    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 0, "abrupt", "tracking outside, the wall inside",
-            NULL, 0, NULL, NULL},
+    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 0, "abrupt",
+            "tracking outside the wall, the wall's force inside", NULL, 0, NULL, NULL},
     .step = step,
     .gains = &(const ethd_gains){NULL, NULL},
 };

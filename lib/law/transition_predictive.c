@@ -34,9 +34,9 @@ static const ethd_param params[COUNT] = {
     {"rate", "1/s", 10, 2000, 500, "rate at which the ring settles at the end, at most half a period's inverse"},
     {"aim", "m", 0, 0.005, 0.00008, "depth in the wall at which the ring is to stand"},
     {"margin", "m", 0, 0.1, 0.003, "clearance kept between finger and ring at the stop"},
-    {"range", "m", 0, 0.5, 0.015, "how far before the wall the approach begins"},
-    {"memory", "1", 0, 0.99, 0.9, "of the observer: share of a residual that stays from tick to tick (b)"},
-    {"learn", "1", 0, 1, 0, "weight of a braking in the learnt deceleration; 0: the facts are right"},
+    {"range", "m", 0, 0.5, 0.015, "distance before the wall at which the approach begins"},
+    {"memory", "1", 0, 0.99, 0.9, "share of the observer's residual that stays from tick to tick (b)"},
+    {"learn", "1", 0, 1, 0, "weight of one braking in the learnt deceleration; 0: nothing is learnt"},
 };
 
 #define RIM 0.3e-3     /* m: a finger nearer than this counts as at the rim; its estimate has this error */

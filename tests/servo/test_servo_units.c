@@ -293,8 +293,8 @@ TEST(test_joint_unmeasured) {
   is_prepare = 1;
   ck_assert_int_eq(open_one("servo", path, &opened), ETHD_E_ARGUMENT);
   ck_assert_str_eq(message,
-                   "d.ini: device.driver: \"servo\" measures joint 2 alone: both are needed, of one map, whose "
-                   "registers may be of several units (bus_unit), or of one more driver");
+                   "d.ini: device.driver: \"servo\" measures joint 2 alone; both joints are needed: in one map, "
+                   "whose registers may be in several units (bus_unit), or from a second driver");
   ck_assert_int_eq(open_one("servo, nail", path, &opened), ETHD_E_ARGUMENT); /* a finger's sensor is no help */
   ck_assert_msg(open_one("servo, counter", path, &opened) == ETHD_OK, "%s", message);
   ethd_device_close(opened);

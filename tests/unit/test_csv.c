@@ -202,7 +202,7 @@ TEST(test_pipe) {
 TEST(test_no_room) {
   static char big[1 << 20];
   struct rlimit before, none;
-  static const char *const sentences[] = {"File too large", "a write failed; is there room?"};
+  static const char *const sentences[] = {"File too large", "a write failed; is the disk full?"};
   char says[128];
   ck_assert_int_eq(ethd_text_write(path, "old", 3, message), ETHD_OK);
   ck_assert_int_eq(getrlimit(RLIMIT_FSIZE, &before), 0);

@@ -181,7 +181,7 @@ TEST(test_channels) {
 /* What isn't spoilt is the device's own: its limits, units, end and remarks, after one that says what this is. */
 TEST(test_passes_on) {
   spoilt x = open_script("1 q1 nan\n");
-  ck_assert_str_eq(ethd_device_remark(x.device, 0), "faults are injected: this is no run to trust");
+  ck_assert_str_eq(ethd_device_remark(x.device, 0), "faults are injected: don't trust this run");
   ck_assert_ptr_null(ethd_device_remark(x.device, 1));
   ck_assert_uint_eq(ethd_device_units(x.device), 1);
   ck_assert(isinf(ethd_device_limits(x.device).torque));

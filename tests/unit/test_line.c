@@ -53,8 +53,8 @@ TEST(test_another_rate) {
     if (fd >= 0) close(fd);
     if (rows[i].good) continue;
     snprintf(expected, sizeof expected,
-             "%s: asked for %u baud, the line has %u, over 2 %% away; choose a rate that it can", path, rows[i].asked,
-             rows[i].has);
+             "%s: %u baud requested, the line has %u, over 2 %% away; choose a rate that the line supports", path,
+             rows[i].asked, rows[i].has);
     ck_assert_str_eq(message, expected);
   }
   close(master);

@@ -47,7 +47,7 @@ static ethd_verdict ask_open(const ethd_conform_def *def, ethd_conform_answer *a
   }
   int left = descriptors() - before;
   if (left)
-    return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "%d descriptors are left open after %d times", left,
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "%d descriptors stay open after %d cycles", left,
                                     OPENINGS - 1);
   return ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT, "%d times open, start, stop, close", OPENINGS);
 }
@@ -68,7 +68,7 @@ static ethd_verdict ask_limits(const ethd_conform_def *def, ethd_conform_answer 
                              pose.x.x, pose.x.y);
   else if (!isfinite(l.torque))
     ethd__conform_rig_answer(a, ETHD_VERDICT_AT_RISK,
-                             "the device names no torque limit: only the configuration's holds");
+                             "the device has no torque limit; only the configuration's limit applies");
   else
     ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT, "torque %.4g Nm, speed %.4g m/s", l.torque, l.speed);
   ethd__conform_rig_end(&r);

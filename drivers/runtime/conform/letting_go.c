@@ -65,11 +65,11 @@ ethd_verdict ethd__conform_watchdog(const ethd_conform_def *def, ethd_conform_an
 ethd_verdict ethd__conform_silence(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
   if (def->device->is_virtual)
-    return ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "on a virtual clock nothing is silent");
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "a virtual clock has no silence");
   if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
   if (!r.units) {
     ethd__conform_rig_end(&r);
-    return ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "it isn't spoken to: no driver of it has I/O");
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "none of its drivers has I/O");
   }
   ethd__conform_rig_settle(&r);
   double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, window(&r));
@@ -85,7 +85,7 @@ ethd_verdict ethd__conform_silence(const ethd_conform_def *def, ethd_conform_ans
         "it removes the torque by itself: %.3g rad/s^2 under torque, %.3g after %g s without a message", pushed, left,
         SILENCE);
   return ethd__conform_rig_answer(a, ETHD_VERDICT_AT_RISK,
-                                  "no watchdog of its own: after %g s without a message %.3g of %.3g rad/s^2", SILENCE,
+                                  "it has no watchdog: after %g s without a message %.3g of %.3g rad/s^2", SILENCE,
                                   left, pushed);
 }
 
@@ -128,6 +128,6 @@ ethd_verdict ethd__conform_restart(const ethd_conform_def *def, ethd_conform_ans
   ethd__conform_rig_end(&r);
   if (!is_pushed(&r, pushed, a)) return a->verdict;
   return ethd__conform_rig_answer(a, left <= LEFT * pushed ? ETHD_VERDICT_KEPT : ETHD_VERDICT_BROKEN,
-                                  "started anew: %.3g rad/s^2 before it is written to, %.3g under torque", left,
+                                  "started again: %.3g rad/s^2 before the first write, %.3g under torque", left,
                                   pushed);
 }

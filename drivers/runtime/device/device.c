@@ -159,7 +159,7 @@ uint32_t ethd_device_figures(const ethd_device *d, ethd_figure *out, uint32_t ma
 
 const char *ethd_device_remark(const ethd_device *d, uint32_t i) {
   const char *own = NULL;
-  if (d->inject && !i--) return "faults are injected: this is no run to trust";
+  if (d->inject && !i--) return "faults are injected: don't trust this run";
   for (uint32_t k = 0; k < d->count && !own; k++) {
     if (!d->at[k].driver->remark) continue;
     uint32_t n = 0;

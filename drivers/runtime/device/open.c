@@ -118,7 +118,7 @@ static ethd_status check_owners(const ethd_device *s, const ethd_device_def *def
     for (uint32_t i = 0; i < s->count; i++) owned |= own_key(def->settings[k].key, s->at[i].driver->id) != NULL;
     if (!owned)
       return ethd__say(message, ETHD_E_UNKNOWN,
-                       "%s:%d: device.%s: with several drivers a key names its own, as in %s.%s",
+                       "%s:%d: device.%s: with several drivers a key needs its driver's name, as in %s.%s",
                        def->file ? def->file : "", def->settings[k].line, def->settings[k].key, s->at[0].driver->id,
                        def->settings[k].key);
   }
@@ -245,8 +245,8 @@ static ethd_status check_joints(const naming *n, const char *ids) {
   }
   if (measured != 1 && measured != 2) return ETHD_OK;
   return ethd__say(n->message, ETHD_E_ARGUMENT,
-                   "%s: device.driver: %s measures joint %u alone: both are needed, of one map, whose registers may be "
-                   "of several units (bus_unit), or of one more driver",
+                   "%s: device.driver: %s measures joint %u alone; both joints are needed: in one map, whose registers "
+                   "may be in several units (bus_unit), or from a second driver",
                    file_of(n->def), ethd__quote(ids, strlen(ids), quote), measured);
 }
 

@@ -12,7 +12,7 @@ static void close_nothing(void *device) { (void)device; }
 
 static const char *says_nothing(const void *device, uint32_t i) {
   (void)device;
-  return i ? NULL : "one of its drivers says nothing of itself, and checks no setting, before it is open";
+  return i ? NULL : "one of its drivers gives no information and checks no setting before it is open";
 }
 
 ethd_driver ethd__driver_prepared(const ethd_driver *driver) {

@@ -24,12 +24,12 @@
 enum { TORQUE, LOW, HIGH, X, Y, HALF, PARAMS };
 
 static const ethd_param params[PARAMS] = {
-    [TORQUE] = {"torque", "Nm", 1e-4, 1e4, 0.1, "the most that a joint gets; the sines take seven tenths of it"},
+    [TORQUE] = {"torque", "Nm", 1e-4, 1e4, 0.1, "largest torque of a joint; the sines use seven tenths of it"},
     [LOW] = {"low", "Hz", 0.1, 100, 0.5, "lowest frequency"},
     [HIGH] = {"high", "Hz", 1, 400, 40, "highest frequency"},
-    [X] = {"x", "m", -100, 100, 0.25, "the place about which the ring moves"},
-    [Y] = {"y", "m", -100, 100, 0.25, "the same in y"},
-    [HALF] = {"half", "m", 1e-3, 10, 0.05, "half the side of the box about it that the ring mustn't leave"},
+    [X] = {"x", "m", -100, 100, 0.25, "x of the middle of the box"},
+    [Y] = {"y", "m", -100, 100, 0.25, "y of the middle of the box"},
+    [HALF] = {"half", "m", 1e-3, 10, 0.05, "half the side of the box that the ring must not leave"},
 };
 
 typedef struct excite {
@@ -118,7 +118,7 @@ const ethd_driver ethd_driver_excite = {
     .size = sizeof(ethd_driver),
     .abi = ETHD_DRIVER_ABI,
     .id = "excite",
-    .brief = "moves an arm by many sines, so that it can be identified; beside a driver that moves",
+    .brief = "multisine excitation of an arm, for its identification; beside a driver that moves the arm",
     .params = params,
     .param_count = PARAMS,
     .open = open_excite,

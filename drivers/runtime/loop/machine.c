@@ -16,14 +16,14 @@
 static const struct {
   const char *sentence, *mend;
 } words[ETHD_SHORT_COUNT] = {
-    {"no real-time priority: the loop waits behind every other program",
+    {"no real-time priority: every other program can delay the loop",
      "put \"@realtime - rtprio 95\" into /etc/security/limits.d/ethd.conf, join the group realtime and log in "
      "again; or: setcap cap_sys_nice+ep PROGRAM"},
     {"memory isn't locked: a page fault may stall a tick",
      "put \"@realtime - memlock unlimited\" into /etc/security/limits.d/ethd.conf, join the group realtime "
      "and log in again; or: setcap cap_ipc_lock+ep PROGRAM"},
     {"the loop isn't bound to the processor that was asked for",
-     "ask for one that is there and allowed (taskset -p $$); isolate it with isolcpus=N on the kernel's "
+     "choose a processor that exists and is allowed (taskset -p $$); isolate it with isolcpus=N on the kernel's "
      "command line"},
     {"deep sleep of the processor isn't prevented: wake-ups come late",
      "let the group open it: KERNEL==\"cpu_dma_latency\", GROUP=\"realtime\", MODE=\"0660\" in "

@@ -37,8 +37,8 @@ static ethd_status remove_earlier(const char *folder, char *message) {
   bool is_recording = ticks && ethd__file_taken(ticks);
   free(ticks);
   if (!is_recording)
-    return ethd__say(message, ETHD_E_ARGUMENT, "%s: holds files of these names, but no recording; nothing is replaced",
-                     folder);
+    return ethd__say(message, ETHD_E_ARGUMENT,
+                     "%s: holds files named like those of a recording, but no recording; nothing is replaced", folder);
   return ethd__claim_empty(folder, own, message);
 }
 
@@ -46,8 +46,8 @@ ethd_status ethd__recording_claim(const char *folder, const ethd_config *config,
                                   char message[ETHD_MESSAGE_MAX]) {
   char unsaid[ETHD_MESSAGE_MAX];
   if (is_input(folder, config))
-    return ethd__say(message, ETHD_E_ARGUMENT, "%s: what is recorded comes from this folder; another one is needed",
-                     folder);
+    return ethd__say(message, ETHD_E_ARGUMENT,
+                     "%s: the recorded input comes from this folder; another folder is needed", folder);
   ethd_status status = ethd__claim_folder(folder, own, false, out, message);
   if (!status || !replace) return status;
   status = ethd__claim_folder(folder, own, true, out, unsaid);

@@ -48,8 +48,8 @@ static ethd_status set(int fd, const char *path, ethd__line_format format, uint3
   if (has < 0) return ethd__say(message, ETHD_E_DEVICE, "%s: %s", path, strerror(errno));
   if (off * ETHD__LINE_RATE_SHARE > baud)
     return ethd__say(message, ETHD_E_DEVICE,
-                     "%s: asked for %u baud, the line has %lld, over 2 %% away; choose a rate that it can", path, baud,
-                     (long long)has);
+                     "%s: %u baud requested, the line has %lld, over 2 %% away; choose a rate that the line supports",
+                     path, baud, (long long)has);
   tcflush(fd, TCIOFLUSH);
   return ETHD_OK;
 }

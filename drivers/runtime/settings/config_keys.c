@@ -56,7 +56,7 @@ ethd_status ethd_config_set(const ethd_config *config, const char *name, const c
   section[dot - name] = 0;
   ethd__key key = {NULL, 0, section, dot + 1, value, message};
   if (ethd__config_in_files_only(section, key.key))
-    return ethd__key_refuse(&key, ETHD_E_ARGUMENT, "can't be set, only the file can say it");
+    return ethd__key_refuse(&key, ETHD_E_ARGUMENT, "can't be set here; only the file can contain it");
   ethd_setup changed = *setup;
   ethd_status status = ethd__config_number(&key, &changed);
   if (status) return status;

@@ -65,9 +65,10 @@ static ethd_status replay_open(const ethd_device_def *def, void **out, char mess
   replay *r = *out = calloc(1, sizeof *r);
   if (!r) return ETHD_E_MEMORY;
   ethd_status status = load(def, r, message);
-  snprintf(r->remark, sizeof r->remark,
-           "tick %zu of the recording was commanded: %s; without the same commands at the same instants it differs",
-           r->tape.changed, r->tape.change);
+  snprintf(
+      r->remark, sizeof r->remark,
+      "tick %zu of the recording had the command %s; without the same commands at the same times the replay differs",
+      r->tape.changed, r->tape.change);
   return status;
 }
 

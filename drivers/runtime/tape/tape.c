@@ -73,7 +73,7 @@ ethd_status ethd__tape_load(const char *folder, ethd__tape *out, char message[ET
                             : no_memory(folder, message);
   free(path);
   out->rows = rows;
-  if (!status && !out->count) status = ethd__say(message, ETHD_E_RANGE, "%s: a recording without a tick", folder);
+  if (!status && !out->count) status = ethd__say(message, ETHD_E_RANGE, "%s: the recording has no ticks", folder);
   if (!status) status = take_events(folder, out, message);
   ethd__received_leave(&received);
   if (status) ethd__tape_free(out);

@@ -187,8 +187,8 @@ static char *read_line(char *out, int room, void *user) {
   check_line(f, s);
   s = uncommented(s);
   if (!f->status && s.length + 1 > (size_t)room)
-    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a line of %zu characters, this build of inih keeps %d", f->name, f->line, s.length,
-           room - 1);
+    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a line of %zu characters; this build of inih reads at most %d", f->name, f->line,
+           s.length, room - 1);
   if (f->status) return NULL;
   memcpy(out, s.text, s.length);
   out[s.length] = 0;

@@ -192,7 +192,7 @@ ethd_status ethd_replace_commit(ethd_replace *replace, char message[ETHD_MESSAGE
   if (!failed && replace->temporary) failed = ethd__file_move(replace->temporary, replace->path) != 0;
   if (failed) {
     status =
-        errno ? refuse(path, message) : ethd__say(message, ETHD_E_FILE, "%s: a write failed; is there room?", path);
+        errno ? refuse(path, message) : ethd__say(message, ETHD_E_FILE, "%s: a write failed; is the disk full?", path);
     if (replace->temporary) ethd__file_remove(replace->temporary);
   }
   if (lock >= 0) close(lock);
