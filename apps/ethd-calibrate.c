@@ -1,4 +1,4 @@
-/* Calibrates the proximity ring: from its counts to distances. */
+/* Calibrates the proximity ring: fits the law from counts to distances. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,11 +14,10 @@
 
 static const char doc[] =
     "Calibrates the proximity ring with a rod of known radius.\v"
-    "Guided (--port): first the empty ring, then the rod in the middle and pressed against the ring at each sensor; "
-    "the "
-    "terminal says what to do. --record keeps the counts, and --in fits them again without the ring. Prints the error "
-    "that each level leaves, and writes the chosen one to --out, for the key calibration of the device's ring.\n"
-    "--self-test does the same with a simulated ring whose laws are known, and says how well they are recovered.\n\n"
+    "With --port it guides you: first measure the empty ring, then the rod in the middle, then the rod pressed against "
+    "the ring at each sensor. --record keeps the counts, and --in fits them again without the ring. It prints the "
+    "remaining error of each level, and writes the chosen level to --out, the file for the ring's key calibration.\n"
+    "--self-test does the same with a simulated ring whose laws are known, and prints the error of the fit.\n\n"
     "Example:\n"
     "  ethd-calibrate --port /dev/ttyUSB0 --record counts.csv --out ring.ini\n"
     "  ethd-calibrate --in counts.csv --level gain --out ring.ini\n"
@@ -29,18 +28,18 @@ enum { RING_RADIUS = 256, SELF_TEST, SEED, NOISE, SERIAL, BAUD, FRAMES };
 static const struct argp_option options[] = {
     {"port", 'p', "TTY", 0, "the ring's serial port", 0},
     {"baud", BAUD, "B", 0, "baud rate of that port (500000)", 0},
-    {"in", 'i', "COUNTS.csv", 0, "fit what --record kept, without a ring", 0},
+    {"in", 'i', "COUNTS.csv", 0, "fit the counts of an earlier --record, without a ring", 0},
     {"self-test", SELF_TEST, NULL, 0, "calibrate a simulated ring instead of a real one", 0},
     {"seed", SEED, "S", 0, "seed of the simulated ring (1)", 0},
     {"noise", NOISE, "N", 0, "standard deviation of the simulated ring's counts (30)", 0},
-    {"frames", FRAMES, "N", 0, "frames that are counted at each place (100)", 0},
-    {"ring-radius", RING_RADIUS, "M", 0, "inner radius of the ring (0.012)", 0},
-    {"rod", 'r', "M", 0, "radius of the rod (0.0075)", 0},
-    {"level", 'l', "LEVEL", 0, "how much is calibrated: none, common, gain, law or table (law)", 0},
+    {"frames", FRAMES, "N", 0, "number of frames at each place (100)", 0},
+    {"ring-radius", RING_RADIUS, "M", 0, "inner radius of the ring, m (0.012)", 0},
+    {"rod", 'r', "M", 0, "radius of the rod, m (0.0075)", 0},
+    {"level", 'l', "LEVEL", 0, "detail of the calibration: none, common, gain, law or table (law)", 0},
     {"serial", SERIAL, "TEXT", 0, "serial number of the ring, kept in the calibration", 0},
-    {"record", 'R', "COUNTS.csv", 0, "keep the counts, written after every step", 0},
+    {"record", 'R', "COUNTS.csv", 0, "keep the counts; the file is written after each step", 0},
     {"out", 'o', "RING.ini", 0, "write the calibration", 0},
-    {"csv", 'c', "OUT.csv", 0, "write a row for each reading: where the rod was, where it was found, the error", 0},
+    {"csv", 'c', "OUT.csv", 0, "write a row for each reading: the rod's true and measured place, and the error", 0},
     {"plot", 'P', "OUT.png", 0, "draw the file of --csv (gnuplot)", 0},
     {0},
 };

@@ -1,5 +1,4 @@
-/* Says whether a configuration is valid, how it was understood, and whether its gains stay within the stability
-   bounds. */
+/* Validates a configuration, prints the setup that it makes, and compares its gains with the stability bounds. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -16,20 +15,19 @@
 #include "sim/plant.h"
 
 static const char doc[] =
-    "Validates a configuration, prints the setup as it was understood, and how far it is from its bounds: stability, "
-    "passivity, rest at touch, quantisation, the tick's time; each with its formula and with what to change.\v"
-    "The device isn't touched: its drivers say what they know from their settings and files (a servo's map gives the "
-    "time of an exchange on its wire, the divisor that holds, registers that nobody confirms, and what isn't watched). "
-    "--open asks the device itself, and enables nothing. Figures come from the drivers and from [arm], or from an "
-    "option, which replaces them. If the delay is unknown, the worst case is assumed and printed: the longest "
-    "spacing of samples that the limits allow, or with --open the longest one measured. Stability includes an elastic "
-    "transmission but no friction, which stops small swings "
-    "only. Where a loop is unstable without it, a line gives the speed up to which friction stops a swing, and the "
-    "speed that one encoder count gives the motors; if the latter is larger, the ring chatters for ever, as the "
-    "simulated device does. A plugin's law that doesn't name its gains isn't judged, which the last "
-    "lines say.\n\n"
-    "--laws and --drivers list what a configuration can name instead, with each parameter's unit, range and default. "
-    "The first law or method of each kind is the default, except that the default transition is offset.\n\n"
+    "Validates a configuration, prints the setup that it makes, and its distance from each bound: stability, "
+    "passivity, rest at touch, quantisation, the tick's time. Each bound has its formula and says what to change.\v"
+    "The device isn't opened: its drivers read their settings and files. A servo's map gives the time of an exchange "
+    "on the wire, the divisor that the bus holds, unconfirmed registers, and faults that aren't noticed. --open reads "
+    "the device too, and enables nothing. Figures come from the drivers and from [arm]; an option replaces them. If "
+    "the delay is unknown, the worst case is assumed and printed: the longest spacing of samples that the limits "
+    "allow, or with --open the longest one measured. Stability includes an elastic transmission but no friction, since "
+    "friction stops only small oscillations. Where a loop is unstable without friction, a line gives the speed up to "
+    "which friction stops an oscillation, and the speed that one encoder count gives the motors; if the second speed "
+    "is larger, the ring chatters for ever. A plugin's law that doesn't name its gains isn't judged; the last lines "
+    "say so.\n\n"
+    "--laws and --drivers list the laws, methods and drivers that a configuration can name, with each parameter's "
+    "unit, range and default. The first law or method of each kind is the default; for transitions it is offset.\n\n"
     "The exit code is 0 for a valid configuration, whether bounds are exceeded or not, and 2, with one line, for an "
     "invalid one.\n\n"
     "Example:\n"
@@ -42,19 +40,19 @@ static const char doc[] =
 enum { OPTION_LAWS = 256, OPTION_PLUGIN, OPTION_DRIVERS, OPTION_DRIVER, OPTION_CSV };
 
 static const struct argp_option options[] = {
-    {"counts", 'c', "N", 0, "encoder counts per joint turn", 0},
-    {"delay", 'd', "TICKS", 0, "ticks from measurement to torque, 0 to 20; fractions are allowed", 0},
-    {"force-limit", 'f', "N", 0, "largest force at the ring: torque limit of a joint / its link", 0},
-    {"friction", 'r', "N", 0, "Coulomb friction at the ring", 0},
+    {"counts", 'c', "N", 0, "encoder counts in a turn of the joint", 0},
+    {"delay", 'd', "TICKS", 0, "delay from measurement to torque, in ticks, 0 to 20; fractions are allowed", 0},
+    {"force-limit", 'f', "N", 0, "largest force at the ring, N: torque limit of a joint / its link", 0},
+    {"friction", 'r', "N", 0, "Coulomb friction at the ring, N", 0},
     {"viscous", 'b', "NSPM", 0, "viscous friction at the ring, Ns/m", 0},
     {"latency", 'l', "S", 0, "age of the finger's readings when they arrive, s", 0},
-    {"open", 'o', NULL, 0, "open the device too: ports, the drive's identity, the empty ring; nothing is enabled", 0},
-    {"laws", OPTION_LAWS, NULL, 0, "list the laws and methods that are built in", 1},
+    {"open", 'o', NULL, 0, "open the device too, enabling nothing: ports, the drive's identity, the empty ring", 0},
+    {"laws", OPTION_LAWS, NULL, 0, "list the built-in laws and methods", 1},
     {"plugin", OPTION_PLUGIN, "FILE", 0, "with --laws: list this plugin's laws too; may be given more than once", 1},
-    {"drivers", OPTION_DRIVERS, NULL, 0, "list the drivers that are built in", 1},
+    {"drivers", OPTION_DRIVERS, NULL, 0, "list the built-in drivers", 1},
     {"driver", OPTION_DRIVER, "FILE", 0, "list this file's driver, checked as [device] driver = file:FILE checks it",
      1},
-    {"csv", OPTION_CSV, "FILE", 0, "write a row for each parameter that is listed", 1},
+    {"csv", OPTION_CSV, "FILE", 0, "write a row for each listed parameter", 1},
     {0},
 };
 

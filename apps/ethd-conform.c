@@ -1,4 +1,4 @@
-/* Does the driver of a device keep its contract, and what can a drive's bus do? */
+/* Tests a device's driver against its contract, and measures a drive's bus. */
 #include <stdio.h>
 
 #include "cli/cli.h"
@@ -6,39 +6,38 @@
 #include "ethd/conform.h"
 
 static const char doc[] =
-    "Puts the driver of a configuration's device to the test at its own boundary: opening and closing, zero torque, "
-    "signs, counts, limits, the watchdog, the safe state.\v"
-    "Only with --move does the device move: each joint is pushed for 0.15 s, or longer on a bus with over 6 ms between "
+    "Tests the driver of a configuration's device against its contract: opening and closing, zero torque, signs, "
+    "counts, limits, the watchdog, the safe state.\v"
+    "The device moves only with --move: each joint is pushed for 0.15 s, or longer on a bus with over 6 ms between "
     "samples. Keep clear of it, with the emergency stop at hand. Ctrl-C, SIGTERM or SIGHUP makes the device safe and "
-    "ends the questions.\n\n"
-    "--probe measures the bus to a servo drive by its register map instead: it connects, identifies, writes zero "
-    "torque and reads, as fast as the bus goes, and says which rate it can hold. Only --try-watchdog enables the "
-    "drive, at zero torque.\n\n"
+    "ends the test.\n\n"
+    "--probe measures the bus to a servo drive instead, by the drive's register map: it connects, identifies the "
+    "drive, writes zero torque and reads, as fast as the bus allows, and prints the rate that the bus holds. Only "
+    "--try-watchdog enables the drive, at zero torque.\n\n"
     "Examples:\n"
     "  printf '[device]\\ndriver = hello\\n' >hello.ini\n"
     "  ethd-conform --config hello.ini --virtual --move\n"
     "  ethd-conform --probe svd48v.map --by-hand 20\n"
     "  ethd-conform --probe plant.map --port 127.0.0.1:1502 --duration 10\n"
     "A driver of your own: [device] driver = file:mine.so, or ethd_conform of ethd/conform.h in a program that links "
-    "it. "
-    "Without --config the simulated device is tested. Its ring moves even at zero torque, because the simulated finger "
-    "pushes it.";
+    "it. Without --config the simulated device is tested. Its ring moves even at zero torque, because the simulated "
+    "finger pushes it.";
 
 enum { OPTION_PROBE = 256, OPTION_PORT, OPTION_PERIOD, OPTION_DURATION, OPTION_WATCHDOG, OPTION_BY_HAND };
 
 static const struct argp_option options[] = {
-    {"config", 'c', "FILE", 0, "configuration whose [device] is asked", 0},
-    {"move", 'm', NULL, 0, "the device may move", 0},
-    {"torque", 't', "NM", 0, "torque of the push (0.1)", 0},
+    {"config", 'c', "FILE", 0, "configuration whose [device] is tested (default: the simulated device)", 0},
+    {"move", 'm', NULL, 0, "allow the device to move", 0},
+    {"torque", 't', "NM", 0, "torque of the push, Nm (0.1)", 0},
     {"virtual", 'v', NULL, 0, "count time instead of waiting: for a simulated device", 0},
     {"probe", OPTION_PROBE, "F.map", 0, "measure the bus to the drive of this register map", 1},
     {"port", OPTION_PORT, "PORT", 0, "HOST:PORT or a serial device, instead of the map's", 1},
-    {"period", OPTION_PERIOD, "S", 0, "period of the loop that the bus has to serve (0.001)", 1},
-    {"duration", OPTION_DURATION, "S", 0, "how long to measure (2)", 1},
+    {"period", OPTION_PERIOD, "S", 0, "period of the loop that uses the bus, s (0.001)", 1},
+    {"duration", OPTION_DURATION, "S", 0, "duration of the measurement, s (2)", 1},
     {"try-watchdog", OPTION_WATCHDOG, NULL, 0,
-     "enable at zero torque, be silent, and say whether the drive let go by itself: keep clear of the arm", 1},
+     "enable at zero torque, stop writing, and say whether the drive disables itself: keep clear of the arm", 1},
     {"by-hand", OPTION_BY_HAND, "S", 0,
-     "after that, wait for so long while you turn the joints by hand, and say which angle rose or fell", 1},
+     "then wait S seconds while you turn the joints by hand, and say which angle rose or fell", 1},
     {0},
 };
 

@@ -1,4 +1,4 @@
-/* From recordings of a device to the numbers of its simulated twin. */
+/* Identifies a plant from recordings of a device. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,17 +15,16 @@
 #include "text/text.h"
 
 static const char doc[] =
-    "Identifies a device from recordings of its commands and encoders, and makes a plant file whose numbers have "
-    "intervals.\v"
+    "Identifies a device from recordings of its commands and encoders, and writes a plant file with intervals of its "
+    "numbers.\v"
     "DIR is a recording of ethd-run, ethd-tap or ethd-study, or a folder of them; recordings of one device are fitted "
     "together. The simulator's prediction over short windows is fitted to the encoders by least squares. An "
-    "information criterion decides whether the transmission gives way, and the whiteness of the residual shows whether "
-    "the device does something else as well. Ticks with a finger near are left out. A number that the "
-    "recordings can't tell keeps its value of --base, and the page says so.\n"
-    "--judge doesn't fit: it says how well a plant predicts recordings that it wasn't fitted to.\n"
-    "--excite makes a recording: it moves the device of a configuration by itself, without a finger, with torques that "
-    "are sums of many sines, inside a box and under the guard, after a dry run on the simulated device. Nobody may be "
-    "near the arm.\n\n"
+    "information criterion decides whether the transmission is elastic; the whiteness of the residual shows whether "
+    "the model is complete. Ticks with a finger near the ring are left out. A number that the recordings don't "
+    "determine keeps its value of --base, and the page says so.\n"
+    "--judge fits nothing: it prints the error of a plant's predictions on recordings that it wasn't fitted to.\n"
+    "--excite makes a recording: it moves the device of a configuration with multisine torques, without a finger, "
+    "inside a box and under the guard, after a dry run on the simulated device. Keep clear of the arm.\n\n"
     "Examples:\n"
     "  ethd-identify --excite --config device.ini --record session\n"
     "  ethd-identify session --out mine.plant --plot fit.png\n"
@@ -35,19 +34,19 @@ enum { BASE = 256, CSV, PLOT, JUDGE, EXCITE, RECORD, FORCE, SHARE, TORQUE, HALF,
 
 static const struct argp_option options[] = {
     {"out", 'o', "MINE.plant", 0, "write the plant", 0},
-    {"base", BASE, "PLANT", 0, "plant whose values are kept for numbers that the recordings can't tell (q)", 0},
+    {"base", BASE, "PLANT", 0, "plant that gives the numbers that the recordings don't determine (q)", 0},
     {"csv", CSV, "OUT.csv", 0, "write a stretch of motion, measured and predicted, and the residual's spectrum", 0},
-    {"plot", PLOT, "OUT.png", 0, "draw that (gnuplot); OUT.csv is written beside it unless --csv says where", 0},
-    {"judge", JUDGE, "PLANT", 0, "say how well this plant predicts the recordings", 0},
-    {"plugins", PLUGINS, NULL, 0, "run the plugins that the recordings' configurations name", 0},
+    {"plot", PLOT, "OUT.png", 0, "draw these data (gnuplot); they are written to OUT.csv unless --csv names a file", 0},
+    {"judge", JUDGE, "PLANT", 0, "print the error of this plant's predictions of the recordings", 0},
+    {"plugins", PLUGINS, NULL, 0, "run the plugins of the recordings", 0},
     {"excite", EXCITE, NULL, 0, "make a recording by moving the device of --config", 1},
     {"config", 'c', "C.ini", 0, "configuration (default: the simulated device)", 1},
     {"record", RECORD, "DIR", 0, "folder of the recording", 1},
-    {"force", FORCE, NULL, 0, "replace a recording that is there", 1},
-    {"duration", 'd', "S", 0, "duration of the recording (60)", 1},
-    {"share", SHARE, "R", 0, "share of the torque limit that may be used (0.5)", 1},
-    {"torque", TORQUE, "NM", 0, "torque limit, if neither device nor configuration has one", 1},
-    {"half", HALF, "M", 0, "half the side of the box (0.04)", 1},
+    {"force", FORCE, NULL, 0, "replace an existing recording", 1},
+    {"duration", 'd', "S", 0, "duration of the recording, s (60)", 1},
+    {"share", SHARE, "R", 0, "largest torque as a share of the torque limit (0.5)", 1},
+    {"torque", TORQUE, "NM", 0, "torque limit, Nm, if neither device nor configuration has one", 1},
+    {"half", HALF, "M", 0, "half the side of the box, m (0.04)", 1},
     {"at", AT, "X,Y", 0, "the box's middle, m (0.25,0.25)", 1},
     {"virtual", VIRTUAL, NULL, 0, "count time instead of waiting: for a simulated device", 1},
     {0},
@@ -172,15 +171,14 @@ static void check_finding(ethd__finding *f) {
   double shift;
   if (f->fit.unseen[ETHD__MASS_X] && f->fit.unseen[ETHD__MASS_Y])
     ethd__fail(ETHD_EXIT_FAILED,
-               "%s: the masses can't be told: torque and motion don't change together enough; record with changing "
+               "%s: the masses aren't determined: torque and motion are too little related; record with changing "
                "torques, as ethd-identify --excite does",
                arg.folders[0]);
   if (ethd__fit_stranger(&f->problem, &other, &shift))
-    ethd__fail(
-        ETHD_EXIT_INPUT,
-        "%s: of another device than the rest, by itself its mass is %.0f %% %s: give the recordings of one device, "
-        "or record it again",
-        f->evidence->folders[other], 100 * fabs(shift), shift > 0 ? "more" : "less");
+    ethd__fail(ETHD_EXIT_INPUT,
+               "%s: of another device than the rest, by itself its mass is %.0f %% %s: give the recordings of one "
+               "device, or record it again",
+               f->evidence->folders[other], 100 * fabs(shift), shift > 0 ? "more" : "less");
 }
 
 static void write_files(const ethd__finding *f, const char *csv) {

@@ -12,26 +12,26 @@
 
 #define DURATION 10.0 /* s */
 
-static const char doc[] =
-    "Runs the loop with a device (the simulated one without a configuration), and prints how late it woke and how long "
-    "its ticks took. Then it runs cyclictest, if that is installed, for as long, at the same period and priority, and "
-    "with the same hold on the DMA latency (none without --dma-latency). The figures hold for this machine and for "
-    "what ran beside the loop. The maximum comes last.\v"
-    "Examples:\n"
-    "  ethd-latency --duration 60 --csv latency.csv\n"
-    "  gnuplot -e \"in='latency.csv'; out='latency.png'\" latency.gp";
+static const char doc[] = "Runs the loop with a device (default: the simulated one), and prints how late it woke and "
+                          "how long its ticks took. Then it runs cyclictest, if installed, for the same time, at the "
+                          "same period and priority, and with the same DMA latency (none without --dma-latency). The "
+                          "figures are valid for this machine and its load during the run.\v"
+                          "Examples:\n"
+                          "  ethd-latency --duration 60 --csv latency.csv\n"
+                          "  gnuplot -e \"in='latency.csv'; out='latency.png'\" latency.gp";
 
 enum { OPTION_CSV = 256, OPTION_CPU, OPTION_PRIORITY, OPTION_EARLY, OPTION_DMA, OPTION_ALONE };
 
 static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "configuration (default: the simulated device)", 0},
-    {"duration", 'd', "S", 0, "how long to run (10)", 0},
+    {"duration", 'd', "S", 0, "duration of the run, s (10)", 0},
     {"csv", OPTION_CSV, "OUT.csv", 0, "write the histograms, a row for each bin", 0},
     {"cpu", OPTION_CPU, "N", 0, "processor of the loop", 0},
     {"priority", OPTION_PRIORITY, "N", 0, "SCHED_FIFO priority of the loop (80)", 0},
-    {"early-wake", OPTION_EARLY, "US", 0, "wake so much earlier, warm the caches and spin until the tick (0)", 0},
-    {"dma-latency", OPTION_DMA, "US", 0, "hold /dev/cpu_dma_latency at this value", 0},
-    {"alone", OPTION_ALONE, NULL, 0, "leave cyclictest out", 0},
+    {"early-wake", OPTION_EARLY, "US", 0,
+     "wake this many microseconds early, warm the caches and spin until the tick (0)", 0},
+    {"dma-latency", OPTION_DMA, "US", 0, "hold /dev/cpu_dma_latency at this value, microseconds", 0},
+    {"alone", OPTION_ALONE, NULL, 0, "don't run cyclictest", 0},
     {0},
 };
 

@@ -1,4 +1,4 @@
-/* Recorded input through any law, open loop; or a recording against itself. */
+/* Runs recorded input through a law, in open loop; or verifies a recording. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,12 +12,11 @@
 #include "trace_in/trace_in.h"
 
 static const char doc[] =
-    "Runs recorded joint angles and finger movements through a control law, tick by tick, and writes what "
-    "the law answers.\v"
-    "IN needs the columns t_s,q1_rad,q2_rad and either xf_m,yf_m,vxf_mps,vyf_mps or t_ring_s,r0_m..r15_m; "
-    "dq1_radps,dq2_radps are used when present, and an empty cell of these or of the "
-    "distances is missing. ethd-convert writes such a file. Nothing is limited unless the configuration has "
-    "[limits].\n\n"
+    "Runs recorded joint angles and finger movements through a control law, tick by tick, and writes the law's "
+    "answers.\v"
+    "IN needs the columns t_s,q1_rad,q2_rad and either xf_m,yf_m,vxf_mps,vyf_mps or t_ring_s,r0_m..r15_m. The columns "
+    "dq1_radps,dq2_radps are optional. An empty cell in them or in the distances is a missing value. ethd-convert "
+    "writes such a file. Torques are limited only if the configuration has [limits].\n\n"
     "Example:\n"
     "  ethd-replay --config smooth.ini --in finger.csv --out torque.csv\n"
     "  ethd-replay --verify recording/";
@@ -29,7 +28,7 @@ static const struct argp_option options[] = {
     {"in", 'i', "IN.csv", 0, "recorded input", 0},
     {"out", 'o', "OUT.csv", 0, "write the law's answer, a row for each tick", 0},
     {"verify", 'v', "DIR", 0, "replay a recording and compare every field bit for bit", 0},
-    {"plugins", OPTION_PLUGINS, NULL, 0, "with --verify: run the plugins that the recording names", 0},
+    {"plugins", OPTION_PLUGINS, NULL, 0, "with --verify: run the plugins of the recording", 0},
     {0},
 };
 
@@ -60,7 +59,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_END:
     if (arg.verify && (arg.in || arg.out || arg.config))
-      argp_error(state, "--verify stands alone: a recording brings its own configuration");
+      argp_error(state, "--verify takes no --config, --in or --out: a recording contains its configuration");
     else if (arg.awaits && !arg.verify)
       argp_error(state, "--verify: a recording's folder is needed");
     else if (arg.plugins && !arg.verify)
@@ -72,9 +71,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-static const char header[] =
-    "t_s,tau1_Nm,tau2_Nm,tau1_raw_Nm,tau2_raw_Nm,beta,state,fex_N,fey_N,fdx_N,fdy_N,eps_m,d_re_m,d_fe_m,"
-    "v_n_mps,x_m,y_m,vx_mps,vy_mps,epsq1_rad,epsq2_rad";
+static const char header[] = "t_s,tau1_Nm,tau2_Nm,tau1_raw_Nm,tau2_raw_Nm,beta,state,fex_N,fey_N,fdx_N,fdy_N,eps_m,d_"
+                             "re_m,d_fe_m,v_n_mps,x_m,y_m,vx_mps,vy_mps,epsq1_rad,epsq2_rad";
 
 static void put2(ethd_csv_out *out, const double v[2]) {
   ethd_csv_number(out, v[0]);

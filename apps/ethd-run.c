@@ -1,4 +1,4 @@
-/* A device, really: opened, stepped in real time, commanded on stdin. */
+/* Runs a device in real time, under commands from stdin. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,24 +12,23 @@
 #define POLL 20 /* ms between looks at signals and the duration */
 
 static const char doc[] =
-    "Runs a device under the controller, one tick a period, until the duration is over, or until the command stop, "
-    "Ctrl-C, SIGTERM or SIGHUP. Then it stops the ring, and disables the device. Ctrl-Z doesn't "
-    "stop it, since a stopped program can't control the ring.\v"
-    "Commands come on stdin, one a line. Each is answered by a line that begins with ok or error:\n"
-    "  transition LAW          swap to another transition law, without a bump\n"
-    "  contact LAW             likewise the contact law\n"
-    "  tracking LAW            likewise the tracking law\n"
-    "  set SECTION.KEY VALUE   set a number, as in the configuration\n"
-    "  status                  say where ring and controller are\n"
+    "Runs a device under the controller, one tick in each period, until the duration ends or the command stop, Ctrl-C, "
+    "SIGTERM or SIGHUP comes. Then it stops the ring and disables the device. Ctrl-Z is ignored, since a stopped "
+    "program can't control the ring.\v"
+    "Commands are read from stdin, one on a line. The answer to each is a line that begins with ok or error:\n"
+    "  transition LAW          change the transition law; the torque doesn't jump\n"
+    "  contact LAW             change the contact law\n"
+    "  tracking LAW            change the tracking law\n"
+    "  set SECTION.KEY VALUE   set a number of the configuration\n"
+    "  status                  print the state of ring and controller\n"
     "  ack                     acknowledge a fault\n"
-    "  enable                  start a disabled device anew, from zero torque\n"
-    "  home [Q1 Q2]            say where the joints are, or find them by moving\n"
-    "  wait S                  let the next command wait for S seconds of the loop\n"
+    "  enable                  start a disabled device again, from zero torque\n"
+    "  home [Q1 Q2]            set the joint angles, rad, or find them by moving\n"
+    "  wait S                  wait for S seconds before the next command\n"
     "  stop                    end the run\n"
-    "The end of the input doesn't end the run; in the background of a terminal no command is read. With --virtual time "
-    "is only counted: it passes in wait and, "
-    "after the input's end, up to the duration. The device is stepped as fast as the machine can, and equal input "
-    "gives equal bytes.\n\n"
+    "The end of the input doesn't end the run. A program in the background of a terminal reads no commands. With "
+    "--virtual, time is counted: it passes in wait and, after the input's end, up to the duration. The device is "
+    "stepped as fast as the machine can, and equal input gives equal bytes.\n\n"
     "Examples:\n"
     "  ethd-run --config device.ini --record session\n"
     "  echo transition smooth | ethd-run --virtual --duration 2";
@@ -54,27 +53,28 @@ enum {
 
 static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "configuration (default: the simulated device)", 0},
-    {"duration", 'd', "S", 0, "end after so many seconds; needed with --virtual", 0},
+    {"duration", 'd', "S", 0, "end after S seconds; needed with --virtual", 0},
     {"record", OPTION_RECORD, "DIR", 0, "record every tick, for ethd-replay --verify", 0},
     {"record-every", OPTION_KEEPS, "N", 0,
-     "record only each Nth tick, for long runs: every tick takes 776 bytes, 2.8 GB an hour at 1 kHz; what is left out "
-     "can't be replayed",
+     "record only each Nth tick, for long runs; such a recording can't be replayed. A tick has 776 bytes: 2.8 GB in an "
+     "hour at 1 kHz",
      0},
-    {"force", OPTION_FORCE, NULL, 0, "replace a recording that is there", 0},
+    {"force", OPTION_FORCE, NULL, 0, "replace an existing recording", 0},
     {"snapshot", OPTION_SNAPSHOT, "FILE.npy", 0,
-     "write the ticks around the first fault, 2 s before and 1 s after; with --record that is DIR/snapshot.npy", 0},
-    {"faults", OPTION_FAULTS, NULL, 0, "print what may go wrong and what happens then, and end", 0},
-    {"telemetry", OPTION_TELEMETRY, "HOST:PORT", 0, "send JSON by UDP, 100 Hz: PlotJuggler's UDP server reads it", 0},
+     "write the ticks around the first fault, 2 s before and 1 s after; default with --record: DIR/snapshot.npy", 0},
+    {"faults", OPTION_FAULTS, NULL, 0, "print the table of faults and reactions, and end", 0},
+    {"telemetry", OPTION_TELEMETRY, "HOST:PORT", 0, "send JSON by UDP at 100 Hz, for PlotJuggler's UDP server", 0},
     {"telemetry-group", OPTION_GROUP, NULL, 0,
-     "let --telemetry name a multicast or broadcast address: everybody there sees what the ring does", 0},
-    {"virtual", OPTION_VIRTUAL, NULL, 0, "count time instead of waiting, in lock-step and without threads", 0},
-    {"home", OPTION_HOME, NULL, 0, "find the joints first, as [device] says: the arm moves, slowly", 0},
+     "allow a multicast or broadcast address in --telemetry; every host of the group can read the data", 0},
+    {"virtual", OPTION_VIRTUAL, NULL, 0, "count time instead of waiting, for a simulated device; no threads", 0},
+    {"home", OPTION_HOME, NULL, 0, "find the joint angles first, as [device] says: the arm moves slowly", 0},
     {"cpu", OPTION_CPU, "N|auto|none", 0, "processor of the loop; auto: the highest isolated one (none)", 1},
     {"priority", OPTION_PRIORITY, "N", 0, "SCHED_FIFO priority of the loop (80)", 1},
-    {"require-rt", OPTION_REQUIRE, NULL, 0, "refuse to run when the machine grants less than realtime", 1},
-    {"early-wake", OPTION_EARLY, "US", 0, "wake so much earlier, warm the caches and spin until the tick (0)", 1},
-    {"dma-latency", OPTION_DMA, "US", 0, "hold /dev/cpu_dma_latency at this value", 1},
-    {"soft-start", OPTION_SOFT, "S", 0, "time in which the torque rises after enabling (0.1)", 1},
+    {"require-rt", OPTION_REQUIRE, NULL, 0, "refuse to run on a machine without realtime rights or kernel", 1},
+    {"early-wake", OPTION_EARLY, "US", 0,
+     "wake this many microseconds early, warm the caches and spin until the tick (0)", 1},
+    {"dma-latency", OPTION_DMA, "US", 0, "hold /dev/cpu_dma_latency at this value, microseconds", 1},
+    {"soft-start", OPTION_SOFT, "S", 0, "time over which the torque rises after enabling, s (0.1)", 1},
     {0},
 };
 

@@ -1,4 +1,4 @@
-/* What a scene holds, how far points are from it, and drawings as scenes. */
+/* Describes a scene, measures distances to it, and converts drawings to scenes. */
 #include <stdio.h>
 #include <string.h>
 
@@ -6,17 +6,16 @@
 #include "scene/scene.h"
 
 static const char doc[] =
-    "Says what a scene holds, or the signed distance of points from it; makes scenes from drawings.\v"
-    "query: IN needs the columns x_m,y_m; OUT gets distance_m,nx,ny,object, a row per point: the smallest "
-    "signed distance over the objects, the normal into that object there, and its number in the file. Objects "
-    "out of the arm's reach count too.\n"
-    "info: counts, extent, build time, memory, and what the arm can't reach. A picture shows the objects, the "
+    "Describes a scene, calculates signed distances of points to it, or makes a scene from a drawing.\v"
+    "query: IN needs the columns x_m,y_m; OUT gets distance_m,nx,ny,object, a row per point: the smallest signed "
+    "distance over the objects, the normal into that object there, and the object's number in the file. Objects out of "
+    "the arm's reach count too.\n"
+    "info: counts, extent, build time, memory, and objects out of the arm's reach. A picture shows the objects, the "
     "boxes of the tree by depth, and the arm's reach.\n"
-    "convert: IN is a drawing (.svg or .dxf) or a scene (.scene), OUT a scene. What is drawn decides: a shape that is "
-    "filled is solid, one that is stroked alone is a thin wall, whatever its width, and a filled one with holes "
-    "becomes "
-    "walls. Text, images and what else no scene can hold are left out and counted. y points up. Drawings are read by "
-    "Python, librsvg and ezdxf.\n\n"
+    "convert: IN is a drawing (.svg or .dxf) or a scene (.scene), OUT a scene. A filled shape becomes a solid, a "
+    "filled shape with holes becomes walls, and a shape with a stroke alone becomes a thin wall, whatever its width. "
+    "Text, images and other content that a scene can't hold are left out and counted. y points up. Python, librsvg and "
+    "ezdxf read the drawings.\n\n"
     "Example:\n"
     "  ethd-scene query --scene walls.scene --in points.csv --out distances.csv\n"
     "  ethd-scene info walls.scene --plot walls.png\n"
@@ -30,12 +29,12 @@ static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "info: configuration with the arm and the ring (default: built in)", 0},
     {"plot", 'p', "OUT.png", 0,
      "info: draw a picture, and keep its data in OUT.csv; convert: draw drawing and scene side by side", 0},
-    {"tolerance", 't', "M", 0, "convert: how far an edge may be from its curve, m (default: 1e-5)", 0},
+    {"tolerance", 't', "M", 0, "convert: largest distance of an edge from its curve, m (default: 1e-5)", 0},
     {"scale", 'l', "M", 0, "convert: SVG: m per user unit (default: by width, height and viewBox, 96 px an inch)", 0},
-    {"units", 'u', "m|cm|mm|in|ft", 0, "convert: DXF: its unit, where the file doesn't say it", 0},
-    {"origin", 'O', "X,Y", 0, "convert: where the page's lower left corner, or DXF's origin, goes, m (default: 0,0)",
+    {"units", 'u', "m|cm|mm|in|ft", 0, "convert: DXF: unit of the drawing, if the file has none", 0},
+    {"origin", 'O', "X,Y", 0, "convert: position of the page's lower left corner, or of DXF's origin, m (default: 0,0)",
      0},
-    {"page", 'g', "solid|background", 0, "convert: what a filled shape is that covers the page", 0},
+    {"page", 'g', "solid|background", 0, "convert: a filled shape that covers the page is a solid or a background", 0},
     {0},
 };
 

@@ -61,7 +61,7 @@ for command in 'ethd-tap --config=' 'ethd-run --config=' 'ethd-replay --out=o.cs
   refuse "$command" '"": a file.s name is needed' "$bin"/$command
 done
 for command in 'ethd-tap --taps 1 --plant' 'ethd-tune --plant'; do
-  refuse "$command" 'nowhere.ini: No such file or directory; it is the configuration of the plant "nowhere": put it there' "$bin"/$command nowhere
+  refuse "$command" 'nowhere.ini: No such file or directory; the plant "nowhere" needs this configuration: put it there' "$bin"/$command nowhere
 done
 
 mkdir "$folder/bad.dir"

@@ -292,7 +292,7 @@ fi
 "$work/robot" $((port + 1)) 1 20 10 >"$work/out" 2>&1 &
 robot=$!
 "$work/teleop" $((port + 2)) 1 >"$work/alone" 2>&1 </dev/null
-[ $? = 1 ] && grep -qx "robot: it doesn't speak: start it with the same port" "$work/alone" || fail "the ring alone: $(cat "$work/alone")"
+[ $? = 1 ] && grep -qx "robot: no packets from it: start it with the same port" "$work/alone" || fail "the ring alone: $(cat "$work/alone")"
 wait $robot
 [ $? = 1 ] && grep -q 'no orders came' "$work/out" || fail "the robot alone: $(cat "$work/out")"
 [ $failed = 0 ] || exit 1

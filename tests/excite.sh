@@ -69,7 +69,7 @@ END
 for signal in TERM INT HUP; do excite told-$signal 0 --config hello.ini --duration 60; done
 excite done 0 --config sim.ini --duration 1.5
 excite broken 1 --config broken.ini --duration 60
-tail -n 1 broken.err | grep -q ': the drive reports a fault: mend it and record again$' || fail "broken: $(cat broken.err)"
+tail -n 1 broken.err | grep -q ': the drive reports a fault: correct it and record again$' || fail "broken: $(cat broken.err)"
 excite lost 1 --config lost.ini --duration 60
 excite outside 1 --config hello.ini --duration 60 --at 0.28,0.25 --half 0.02
 [ -n "$late" ] || tail -n 1 outside.err | grep -q ': the guard stopped the ring 0.03 m from the middle of the box: put it there' || fail "outside: $(cat outside.err)"
@@ -86,7 +86,7 @@ except BlockingIOError:
 os.set_blocking(write, True)
 p = subprocess.run([sys.argv[1], "--excite", "--record", "unread", "--config", "hello.ini", "--duration", "1"], stdout=write,
                    stderr=subprocess.PIPE, text=True, timeout=100)
-assert p.returncode == 1 and "standard output: nobody read it in time" in p.stderr, (p.returncode, p.stderr)
+assert p.returncode == 1 and "standard output: its reader is too slow" in p.stderr, (p.returncode, p.stderr)
 assert open("unread/events.csv").read().endswith(",end,closed\n")
 END
 

@@ -135,7 +135,7 @@ refuse() { # TEXT ARGUMENTS...
   is=$?
   [ $is = 2 ] && grep -q -- "$text" err || fail "$* gives $is: $(cat err)"
 }
-refuse 'has its own laws and speeds' --csv x.csv
-refuse 'has its own laws and speeds' --speed low
+refuse 'sets laws, speeds and a simulated hand' --csv x.csv
+refuse 'sets laws, speeds and a simulated hand' --speed low
 refuse 'none.ini: No such file' --plant ./none
 exit $failed

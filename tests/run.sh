@@ -226,7 +226,7 @@ for port in 0 99999 65536; do
   refuse "telemetry: found \"127.0.0.1:$port\"; a port from 1 to 65535" --telemetry 127.0.0.1:$port --virtual --duration 1
 done
 for address in 239.1.2.3:9870 255.255.255.255:9870 '[ff02::1]:9870'; do
-  refuse "telemetry: .* many may listen; --telemetry-group" --telemetry "$address" --virtual --duration 1
+  refuse "telemetry: .* a group address; allow it with --telemetry-group" --telemetry "$address" --virtual --duration 1
 done
 
 # ---- a folder of output is never replaced in silence ----
@@ -298,7 +298,7 @@ says "$folder/err" '^ethd-run: device sim: start: the device refused or failed$'
 # ---- what is missing, and which step comes next: a device without a finger doesn't enable in silence ----
 printf '[device]\ndriver = hello\n' >"$folder/blind.ini"
 "$run" --config "$folder/blind.ini" --duration 0.3 </dev/null >"$folder/blind" 2>&1 || fail "hello: $(cat "$folder/blind")"
-says "$folder/blind" '^device: nothing measures the finger: the ring stands and follows nothing' '^next: step [16] of "From the box to the first touch" in drivers/README.md' \
+says "$folder/blind" '^device: no sensor measures the finger, so the ring stands still' '^next: step [16] of "From the box to the first touch" in drivers/README.md' \
   '^finger  *never measured'
 "$run" --duration 0.3 </dev/null >"$folder/sees" 2>&1 || fail "sim: $(cat "$folder/sees")"
 grep -q -e 'measures the finger' -e '^finger' -e '^next' "$folder/sees" && fail "the simulated device has a finger: $(cat "$folder/sees")"

@@ -155,8 +155,8 @@ for both in (False, True):
     said = unread(name, [run, "--duration", "600", "--record", folder + "/" + name], signal.SIGTERM, both)
     events = open(folder + "/" + name + "/events.csv").read()
     check(",fault," not in events and ",end,closed" in events, name, events)
-    check(both or re.search(r"standard output: nobody read it in time, and \d+ bytes are lost", said), name, said)
+    check(both or re.search(r"standard output: its reader is too slow, and \d+ bytes are lost", said), name, said)
 said = unread("latency", [bin_ + "/ethd-latency", "--alone", "--duration", "0.3"], None)
-check(re.search(r"nobody read it in time, and \d+ bytes are lost", said), said)
+check(re.search(r"its reader is too slow, and \d+ bytes are lost", said), said)
 
 sys.exit(len(failed) > 0)

@@ -204,7 +204,7 @@ for drawing in room.svg room.txt; do refuse "$drawing: is a drawing, not a scene
 refuse 'room.dxf: is a drawing, not a scene: ethd-scene convert' info room.dxf
 # a solid with another side near by: 4 mm of a box, 2 mm of a triangle; walls of one side, and thick ones, are none
 printf 'box 0.25 0.25 0.002 0.1 0\npolygon 0 0 1 0 0 0.002\ncapsule 0 0 1 0 0.006\nsegment 0 0 1 1\n' >thin.scene
-"$program" info thin.scene | grep -q '^thin:  *2 solids are thinner than 10 mm, object 1 (polygon) is 2 mm: a ring .* pushed out on the other side; a segment' || fail "thin solids: $("$program" info thin.scene)"
+"$program" info thin.scene | grep -q '^thin:  *2 solids are thinner than 10 mm, object 1 (polygon) is 2 mm: a ring .* pushed out on the other side; the force of a segment' || fail "thin solids: $("$program" info thin.scene)"
 "$program" info walls.scene | grep -q '^thin' && fail "thick solids are called thin"
 { sed 's/^file = .*/file = thin.scene/' "$BUILD/share/ethd/n.ini"; } >thin.ini
 "$BUILD/bin/ethd-check" thin.ini | grep -q '^scene  *2 solids are thinner' || fail "ethd-check doesn't name thin solids"

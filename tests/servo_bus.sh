@@ -50,7 +50,7 @@ sed 's/^response = .*/response = 2/' apps/config/plant.map >"$folder/plant.map"
 configure patient "127.0.0.1:$at"
 "$BUILD/bin/ethd-conform" --probe "$folder/plant.map" --port "127.0.0.1:$at" --duration 0.2 --try-watchdog >"$folder/tried" 2>&1 ||
   fail "watchdog: exit $?: $(cat "$folder/tried")"
-says "$folder/tried" '^watchdog .*it let go after 1 s of silence: it has one; the map says it has one'
+says "$folder/tried" '^watchdog .*it is disabled after 1 s of silence: it has one; the map says it has one'
 ordinary="prlimit --rtprio=0"
 [ "$(id -u)" != 0 ] || ordinary="setpriv --bounding-set=-sys_nice $ordinary"
 $ordinary "$run" --config "$folder/patient.ini" --duration 0.3 </dev/null >"$folder/ordinary" 2>&1 8>&- ||

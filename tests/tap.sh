@@ -29,7 +29,7 @@ if [ -z "${SAN:-}" ]; then
     "$tap" --taps 400 --plant "${run% *}" --seed "${run#* }" --csv "$folder/claims.csv" >"$folder/table"
     "$python" tests/tap_claims.py "$folder/claims.csv" "${run% *}" >"$folder/out" 2>&1 || { cat "$folder/table"; fail "plant and seed $run: $(tail -n 1 "$folder/out")"; }
   done
-  grep -q 'tested within people: by ethd-report' "$folder/table" || fail "it doesn't say who tests"
+  grep -q 'within people: ethd-report tests them' "$folder/table" || fail "it doesn't say who tests"
 fi
 grep -q 'not realtime' "$folder/a.txt" || fail "it doesn't say that nothing is realtime"
 grep -q 'not measured' "$folder/a.txt" || fail "it doesn't say that the plant is fitted"

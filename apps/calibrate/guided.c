@@ -112,9 +112,9 @@ static char ask(const char *what) {
 }
 
 static ethd_status ended(const guided *g) {
-  return ethd__say(g->message, ETHD_E_ARGUMENT, "ended after %zu place%s; %s", g->places->count,
-                   ethd__s(g->places->count),
-                   g->o->record ? "they are kept: --in goes on with them" : "nothing was kept: --record would have");
+  return ethd__say(
+      g->message, ETHD_E_ARGUMENT, "ended after %zu place%s; %s", g->places->count, ethd__s(g->places->count),
+      g->o->record ? "they are kept: --in goes on with them" : "nothing was kept: use --record to keep the counts");
 }
 
 static ethd_status keep(const guided *g) {

@@ -9,7 +9,7 @@ typedef struct ethd__guided_options {
   uint32_t baud;
   int frames;              /* of one place */
   double ring_radius, rod; /* m */
-  const char *record;      /* kept after every step; NULL: nowhere */
+  const char *record;      /* CSV file, written after every step; NULL: none */
 } ethd__guided_options;
 
 /* Asks on stdout and reads answers from stdin: Enter measures, s skips the place, b goes back one, q ends. Fails with a

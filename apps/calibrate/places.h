@@ -1,4 +1,4 @@
-/* A calibration's raw data: what the sensors counted in the empty ring and with a rod at known places. */
+/* A calibration's raw data: counts of the sensors in the empty ring and with a rod at known places. */
 #ifndef ETHD__APPS_CALIBRATE_PLACES_H
 #define ETHD__APPS_CALIBRATE_PLACES_H
 

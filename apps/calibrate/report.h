@@ -1,4 +1,4 @@
-/* How good a calibration is: tables, a CSV file, a picture. */
+/* Errors of a calibration: tables, a CSV file, a picture. */
 #ifndef ETHD__APPS_CALIBRATE_REPORT_H
 #define ETHD__APPS_CALIBRATE_REPORT_H
 

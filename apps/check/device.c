@@ -50,9 +50,8 @@ void ethd__report_device(ethd__subject *s) {
   figure("; encoder count", f->loop.count * fmax(arm->link1, arm->link2), 1e6, "um at the ring", "--counts");
   figure("; finger's readings", f->latency, 1e3, "ms old", "--latency");
   if (f->delay_is[0]) printf("\n             delay: %s", f->delay_is);
-  printf("\n%s",
-         f->loop.motor_mass > 0
-             ? "             its transmission gives way, which stability counts; the other bounds are a rigid one's\n"
-             : "");
+  printf("\n%s", f->loop.motor_mass > 0
+                     ? "             elastic transmission: included in stability; the other bounds assume a rigid one\n"
+                     : "");
   feel(s);
 }

@@ -1,4 +1,4 @@
-/* Prints what the drivers of a device say of it, whether they asked the device or only read about it. */
+/* Prints the drivers' information on a device, from the open device or from its settings alone. */
 #include <math.h>
 #include <stdio.h>
 
@@ -12,7 +12,7 @@ static void limit(const char *name, double value, const char *unit, double scale
     printf("%s %.4g %s", name, scale * value, unit);
 }
 
-/* Where the device says that its joints stand; it was asked once, when it was opened. */
+/* The joint angles that the device gave when it was opened. */
 static void joints(const ethd_config *config, ethd_device *device) {
   ethd_sense sense = {.time_ns = 0};
   ethd_pose pose;

@@ -1,4 +1,4 @@
-/* What `ethd-check --laws` and its like print: every law, method and driver that a configuration can name. */
+/* Prints the lists of `ethd-check --laws` and `--drivers`: every law, method and driver that a configuration can name. */
 #ifndef ETHD__APPS_CHECK_LAWS_H
 #define ETHD__APPS_CHECK_LAWS_H
 

@@ -8,15 +8,15 @@
 #include "ethd/config.h"
 #include "ethd/driver.h"
 
-/* Prints the setup as it was understood, as a configuration that gives the same setup again. */
+/* Prints the setup as a configuration that gives the same setup again. */
 void ethd__report_setup(const ethd_config *config);
 
-/* What is known of the device; NaN: not known. */
+/* Data of the device; NaN: not known. */
 typedef struct ethd__figures {
-  ethd__bounds_device loop; /* what its loops feel; only stability counts a transmission that gives way */
+  ethd__bounds_device loop; /* the device in its loops; only stability includes an elastic transmission */
   double force[2];          /* N: torque limit / L, along x and y */
   double latency;           /* s, of the readings of the finger */
-  char delay_is[160];       /* how the delay was found where nobody says it; empty: it is said */
+  char delay_is[160];       /* source of the delay if it was not given; empty: given */
 } ethd__figures;
 
 typedef struct ethd__subject {
@@ -25,12 +25,11 @@ typedef struct ethd__subject {
   ethd__bounds_felt felt; /* of tracking at the ring; NaN: unknown law or out of reach */
 } ethd__subject;
 
-/* Prints what the device's drivers say: their remarks, and the limits that rule. is_open: the device itself was
-   asked. */
+/* Prints the drivers' remarks and the effective limits. is_open: the device itself was read. */
 void ethd__report_drivers(const ethd_config *config, ethd_device *device, bool is_open);
 
 /* Sets the delay that no option, driver or plant gives. Of an open device it measures the longest spacing of samples.
-   Otherwise, or if too few samples come, it takes the longest spacing that the limits allow. `figures` tells which.
+   Otherwise, or if too few samples come, it takes the longest spacing that the limits allow. `figures` says which.
    Nothing is enabled. */
 void ethd__find_delay(const ethd_setup *setup, ethd_device *device, bool is_open, ethd__figures *figures);
 
@@ -44,7 +43,7 @@ int ethd__report_stability(const ethd_setup *setup, const ethd__bounds_device *d
 /* Prints the margin of the guard's stop, and the time that it takes; returns how many bounds are exceeded. */
 int ethd__report_guard(const ethd_setup *setup, const ethd__bounds_device *device);
 
-/* Prints a line for each loop whose law's gains aren't known, so that nobody takes its silence for stability. */
+/* Prints a line for each loop whose law's gains aren't known, so that a missing row isn't read as stable. */
 void ethd__report_unjudged(const ethd_setup *setup);
 
 /* Each prints its section and returns how many bounds are exceeded. */

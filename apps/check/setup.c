@@ -12,7 +12,7 @@ static void word(const char *key, const char *value, const char *brief) {
   printf("%-13s = %-12s ; %s\n", key, value, brief);
 }
 
-/* Writes as many digits as it takes to read the same number again. */
+/* Writes the fewest digits that give the same number again. */
 static void exact(double value, char out[32]) {
   for (int digits = 6; digits <= 17; digits++) {
     snprintf(out, 32, "%.*g", digits, value);
@@ -73,7 +73,7 @@ static void section(const ethd_config *c, const char *name) {
   }
 }
 
-/* The rest prints what sections have beside their keys. */
+/* The rest prints the further contents of sections. */
 static void difference(const ethd_config *c) {
   printf("; d_beta = R_r - R_f,max = %.10g m\n", c->setup.ring_radius - c->setup.finger_radius_max);
 }

@@ -1,4 +1,4 @@
-/* The delay of a device that doesn't say it. */
+/* The delay of a device that doesn't give it. */
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -18,7 +18,7 @@ typedef struct io {
   atomic_bool *ends;
 } io;
 
-/* What the loop's I/O thread of a unit does. */
+/* Does the work of a unit's I/O thread. */
 static void *serve(void *context) {
   const io *u = context;
   while (!atomic_load(u->ends))

@@ -62,7 +62,7 @@ static const char *quicker(ethd_velocity_method method) {
   }
 }
 
-/* The largest stable value of a gain, 0: none, or no such gain. */
+/* Largest stable value of a gain; 0: none, or no such gain. */
 static double most_of(const ethd__bounds_row *rows, int count, ethd__bounds_number number) {
   for (int i = 0; i < count; i++)
     if (rows[i].number == number) return rows[i].end;
@@ -82,7 +82,7 @@ static void say_change(const looked_at *l, double most_k, double most_b) {
          quicker(loop->method));
 }
 
-/* What friction does where the rows say EXCEEDED, which leave it out. */
+/* Effect of friction on rows that are EXCEEDED without it. */
 static void say_held(const looked_at *l) {
   const ethd__bounds_hold hold = ethd__bounds_holds(&l->loop, l->device);
   if (isnan(hold.held)) return;
@@ -100,7 +100,7 @@ static void say_held(const looked_at *l) {
 
 /* ---- one loop ---- */
 
-/* Only a damper, or friction, can make up for what the hold takes. */
+/* Only a damper or friction can compensate the energy of the hold. */
 static int undamped(const looked_at *l) {
   double needed = ethd__sampled_damping_needed(&l->loop), b = l->device->viscous;
   printf("  %-20s has no damping: the hold takes K (T (n + 1/2) + t_d) = %.4g Ns/m, for friction to give; ", l->what,
@@ -165,7 +165,7 @@ static int report_axes(const ethd_setup *setup, const ethd__bounds_device *devic
   return exceeded;
 }
 
-/* The setup, with a material's numbers in the contact law; those that another law knows don't count. */
+/* The setup, with a material's numbers in the contact law; numbers of other laws don't count. */
 static ethd_setup on_material(const ethd_setup *setup, const ethd_material *m) {
   ethd_setup changed = *setup;
   for (uint32_t i = 0; i < m->count; i++) {
@@ -236,7 +236,7 @@ int ethd__report_guard(const ethd_setup *setup, const ethd__bounds_device *devic
     exceeded += row.margin < 1;
   }
   if (isnan(setup->dynamics.mass[0]) || isnan(setup->dynamics.mass[1]))
-    printf("  guard's stop           doesn't know arm.mass_x and mass_y: a ring heavier than %.3g kg is let go\n",
+    printf("  guard's stop           arm.mass_x and mass_y unknown: a ring heavier than %.3g kg loses its torque\n",
            1.2 * ETHD_MASS_ASSUMED);
   const double needed = ethd_guard_stop_time(&g, limits);
   if (needed > 0)

@@ -71,7 +71,7 @@ static void creep(const ethd_setup *setup, double damping) {
          capped ? "until transition.eps_max or t_max" : "for ever: transition.eps_max and t_max would end it");
 }
 
-/* Compares how far before the wall the law is asked with the distance that a stop takes there. */
+/* Compares the law's range before the wall with the distance of a stop. */
 static int looks_ahead(const ethd__subject *s, int axis) {
   const ethd_setup *setup = &s->config->setup;
   ethd__bounds_stop stop = stop_of(s, axis);

@@ -70,7 +70,7 @@ int ethd__report_tick(const ethd__subject *s) {
   printf("  p50 %.2f us, p99.9 %.2f us, max %.1f us, of %s = %.4g us; %s\n", 1e-3 * ns[TICKS / 2],
          1e-3 * ns[TICKS - 1 - TICKS / 1000], 1e-3 * ns[TICKS - 1],
          most < setup->period ? "limits.step_time" : "loop.period", 1e6 * most,
-         is_realtime() ? "a measurement, if a short one" : "no bound: this process isn't realtime");
+         is_realtime() ? "a short measurement" : "no bound: this process isn't realtime");
   free(ns);
   if (judged <= most) return 0;
   printf("  EXCEEDED; to change: fewer objects in the scene, a longer loop.period or limits.step_time\n");

@@ -74,7 +74,7 @@ int ethd__end(int code) {
   if (reason)
     fprintf(stderr, "%s: standard output: %s\n", program_invocation_short_name, strerror(reason));
   else
-    fprintf(stderr, "%s: standard output: nobody read it in time, and %" PRIu64 " bytes are lost\n",
+    fprintf(stderr, "%s: standard output: its reader is too slow, and %" PRIu64 " bytes are lost\n",
             program_invocation_short_name, dropped);
   return code ? code : ETHD_EXIT_FAILED;
 }
@@ -254,7 +254,7 @@ char *ethd__motion_folder(void) {
 char *ethd__data_path(const char *name) {
   char *path = in_data_folder(name);
   if (access(path, R_OK) != 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s; ETHD_DATA_DIR may name the folder it is in", path, strerror(errno));
+    ethd__fail(ETHD_EXIT_FAILED, "%s: %s; ETHD_DATA_DIR may name its folder", path, strerror(errno));
   return path;
 }
 

@@ -61,7 +61,7 @@ char *ethd__data_path(const char *name);
 /* Returns the file as it is named or, if there is none, the installed one of that name. The caller frees it. */
 char *ethd__given_or_data(const char *name);
 
-/* Says that somebody else may have made the folder: from here on no link below it is followed, and only regular files
+/* Marks the folder as received from others: from here on no link below it is followed, and only regular files
    are read and replaced there (text/file.h). NULL: there is none. */
 void ethd__receive(const char *folder);
 
@@ -91,7 +91,7 @@ void ethd__catch_end(void);
    up: Ctrl-Z doesn't stop it, nor does the terminal when it runs in the background, and no print waits (terminal.h). */
 void ethd__hold_device(void);
 
-/* Says that Ctrl-Z is ignored, if somebody has pressed it. */
+/* Prints that Ctrl-Z is ignored, if it was pressed. */
 void ethd__tell_refusal(void);
 extern volatile sig_atomic_t ethd__stop;
 

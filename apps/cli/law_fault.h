@@ -1,4 +1,4 @@
-/* Which law a fault came by: a controller's faults LAW and FINITE tell it in their event's value. All [main]. */
+/* Finds the law that caused a fault: the events of a controller's faults LAW and FINITE contain it in their value. All [main]. */
 #ifndef ETHD__APPS_CLI_LAW_FAULT_H
 #define ETHD__APPS_CLI_LAW_FAULT_H
 
@@ -9,7 +9,7 @@ typedef struct ethd__law_fault {
   const char *what;    /* a sentence */
 } ethd__law_fault;
 
-/* Returns the law of this setup, which rules, by which the event's fault came. */
+/* Returns the law of this active setup that caused the event's fault. */
 ethd__law_fault ethd__law_fault_of(const ethd_setup *setup, const ethd_event *event);
 
 /* Takes all events that wait and returns the first of a law's faults among them. */

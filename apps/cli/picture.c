@@ -52,7 +52,7 @@ static void put_value(FILE *to, const ethd__picture_value *v) {
 
 /* ---- running it ---- */
 
-/* Keeps gnuplot's last line on stderr, which says most. */
+/* Keeps gnuplot's last line on stderr, which has the cause. */
 static void listen(int end, char said[ETHD_MESSAGE_MAX / 2]) {
   FILE *in = fdopen(end, "r");
   char line[256];

@@ -1,4 +1,4 @@
-/* What ends a program, and what doesn't. */
+/* Signals that end a program, and signals that don't. */
 #include <errno.h>
 #include <stdio.h>
 #include <time.h>

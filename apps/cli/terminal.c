@@ -74,7 +74,7 @@ static void end(stream *s) {
   if (s->writer) ethd__writer_end(s->writer);
 }
 
-/* However the program ends, what it said is written before. */
+/* Writes pending output however the program ends. */
 static void at_exit(void) {
   fflush(stdout);
   end(&out);
@@ -109,5 +109,5 @@ void ethd__terminal_erase_line(void) {
 
 bool ethd__stdin_is_ours(void) {
   pid_t group = tcgetpgrp(STDIN_FILENO);
-  return group <= 0 || group == getpgrp(); /* 0 or less: nobody's terminal, or none of ours */
+  return group <= 0 || group == getpgrp(); /* 0 or less: no terminal of ours */
 }

@@ -15,8 +15,7 @@ bool ethd__terminals_plain(void);
    [main] */
 bool ethd__streams_detach(void);
 
-/* Waits until all of stdout is written, as long as somebody reads. Returns 0, or errno of a write that failed; *dropped:
-   bytes that nobody read in time. Flushes nothing. [main] */
+/* Waits until all of stdout is written, as long as its reader reads. Returns 0, or errno of a failed write; *dropped: bytes that were not read in time. Flushes nothing. [main] */
 int ethd__stdout_end(uint64_t *dropped);
 
 /* Takes away the line of stderr's terminal in which the cursor is. [any] */

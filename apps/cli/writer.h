@@ -15,10 +15,10 @@ typedef struct ethd__writer {
   pthread_t thread;
   pthread_mutex_t lock;
   pthread_cond_t filled;
-  size_t begin, length; /* what waits is a ring; only the thread moves begin */
+  size_t begin, length; /* a ring of waiting text; only the thread moves begin */
   int failure;          /* errno of a write that failed, after which nothing is written; 0: none */
   uint64_t dropped;     /* bytes */
-  bool given_up;        /* the end was waited for in vain */
+  bool given_up;        /* the wait for the end timed out */
   char at[ETHD__WRITER_ROOM];
 } ethd__writer;
 
@@ -28,7 +28,7 @@ bool ethd__writer_start(ethd__writer *writer, int fd);
 /* Takes the text, or drops all of it. Never waits for a reader. [any] */
 void ethd__writer_put(ethd__writer *writer, const char *text, size_t length);
 
-/* Waits until all is written, as long as somebody reads; after 0.3 s in which nobody does the rest counts as dropped.
+/* Waits until all is written, as long as the reader reads; after 0.3 s without a read the rest counts as dropped.
    The thread goes on until the process ends. [main] */
 void ethd__writer_end(ethd__writer *writer);
 

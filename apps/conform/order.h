@@ -1,4 +1,4 @@
-/* Tells a position's order of two words from its values: a joint stands within a turn and moves little from one reading
+/* Finds a position's order of two words from its values: a joint stands within a turn and moves little from one reading
    to the next, while words that are exchanged make turns of it. */
 #ifndef ETHD__APPS_CONFORM_ORDER_H
 #define ETHD__APPS_CONFORM_ORDER_H

@@ -32,7 +32,7 @@ static void load(void) {
 
 static const char *const orders[] = {"low-first", "high-first"};
 
-/* Whether anything comes back in this order of the checksum. */
+/* Returns whether the drive answers in this order of the checksum. */
 static bool answers(int32_t crc) {
   static ethd__servo_map other;
   static ethd__servo_plan plan;
@@ -63,7 +63,7 @@ static void find_order(void) {
   map.crc = !map.crc;
 }
 
-/* Connected and identified, or the reason why not. */
+/* Connects and identifies, or gives the reason why not. */
 static void reach(void) {
   const double zero[2] = {0, 0};
   ethd__servo_link_make(&map, &drive);
@@ -77,7 +77,7 @@ static void reach(void) {
 
 static ethd__position_seen seen[2];
 
-/* Notes what was just read of the joints. */
+/* Notes the joint angles just read. */
 static void see(void) {
   for (int i = 0; i < 2; i++) {
     int32_t r = map.roles[ETHD__SERVO_POSITION1 + i];
@@ -119,29 +119,29 @@ static void turns(int32_t sequence, double seconds) {
     (void)!ethd__servo_link_turn(&drive, ethd__clock_now(), zero);
 }
 
-/* Enabled under zero torque, nobody speaks for a while; then the drive says what it did. */
+/* Enables at zero torque, writes nothing for a while, then reads the drive's state. */
 static void try_watchdog(void) {
   double silence = fmax(SILENCE, 3 * map.watchdog_time);
   bool shows = false;
   for (uint32_t i = 0; i < map.count; i++) shows |= map.registers[i].enabled_mask != 0;
-  if (!shows) ethd__fail(ETHD_EXIT_INPUT, "%s: no enabled_mask: the drive can't be seen to let go", arg.map);
+  if (!shows) ethd__fail(ETHD_EXIT_INPUT, "%s: no enabled_mask, so the drive's state can't be read", arg.map);
   turns(ETHD__SERVO_ENABLE, 30);
   if (drive.state != ETHD__SERVO_ENABLED) ethd__fail(ETHD_EXIT_FAILED, "it can't be enabled: %s", drive.message);
   turns(-1, 0.2);
-  if (!is_enabled()) ethd__fail(ETHD_EXIT_FAILED, "it lets go while it is spoken to");
+  if (!is_enabled()) ethd__fail(ETHD_EXIT_FAILED, "the drive disables itself although the bus is active");
   nanosleep(&(struct timespec){(time_t)silence, (long)(1e9 * (silence - floor(silence)))}, NULL);
   drive.plan.all = true; /* slow registers, too, as they are now */
   (void)!ethd__servo_link_turn(&drive, ethd__clock_now(), (const double[2]){0, 0});
   bool let_go = !is_enabled();
   printf("%-10s %s after %g s of silence: %s; the map says %s\n", "watchdog",
-         let_go ? "it let go" : "it is enabled still", silence, let_go ? "it has one" : "it has none",
+         let_go ? "it is disabled" : "it is enabled still", silence, let_go ? "it has one" : "it has none",
          map.watchdog == ETHD__SERVO_WATCH_NONE ? "none" : "it has one");
   turns(ETHD__SERVO_DISABLE, 30);
 }
 
 /* ---- signs ---- */
 
-/* How far the joint has moved, in the order that is plausible. */
+/* Motion of the joint, in the plausible order. */
 static double moved(int i) {
   const ethd__servo_register *r = &map.registers[map.roles[ETHD__SERVO_POSITION1 + i]];
   int32_t order = ethd__position_order(r, &seen[i]);
@@ -161,7 +161,7 @@ static void watch_hands(void) {
       printf("%-10s position%d went %+.4f rad: its sign is %s\n", "", i + 1, moved(i),
              moved(i) == 0  ? "not known, it didn't move"
              : moved(i) > 0 ? "right if its angle rose"
-                            : "to be turned in the map if its angle rose");
+                            : "wrong, change it in the map, if its angle rose");
 }
 
 /* ---- the report ---- */
@@ -182,7 +182,7 @@ static void print_rate(double seconds) {
          floor(1 / slow), (double)trip.count / seconds);
 }
 
-/* What the wire takes by its rate and bytes; the rest of what was measured is the drive's, and the line's driver's. */
+/* Time on the wire by rate and bytes; the rest of the measured time is the drive's and the line driver's. */
 static void print_wire(void) {
   ethd__servo_wire wire = ethd__servo_wire_of(&map, 0);
   double usual = 1e-9 * (double)ethd_histogram_at(&trip, 0.5);
@@ -193,7 +193,7 @@ static void print_wire(void) {
          1e3 * map.turnaround);
 }
 
-/* Whether the map's exchanges end before the next begins. */
+/* Returns whether the map's exchanges end before the next begins. */
 static void print_divisor(void) {
   double slow = 1e-9 * (double)ethd_histogram_at(&trip, 0.99);
   uint32_t needed = ethd__servo_divisor_for(slow, arg.period);

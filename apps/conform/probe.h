@@ -1,4 +1,4 @@
-/* `ethd-conform --probe`: what a bus with a drive on it can do. */
+/* `ethd-conform --probe`: measures a bus with a drive. */
 #ifndef ETHD__APPS_CONFORM_PROBE_H
 #define ETHD__APPS_CONFORM_PROBE_H
 
@@ -8,8 +8,8 @@ typedef struct ethd__probe_def {
   const char *map;  /* register map of the drive */
   const char *port; /* instead of the map's; NULL: the map's */
   double duration;  /* s, of the measurement */
-  double period;    /* s, of the loop that the bus has to serve */
-  double by_hand;   /* s, in which somebody turns the joints; 0: nobody does */
+  double period;    /* s, of the loop that uses the bus */
+  double by_hand;   /* s, for turning the joints by hand; 0: not done */
   bool watchdog;    /* enable at zero torque, and see whether silence disables the drive */
 } ethd__probe_def;
 

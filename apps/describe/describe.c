@@ -44,7 +44,7 @@ static void put_words(FILE *file, const char *key, const ethd__word_list *list) 
   putc(']', file);
 }
 
-/* As the study's file or the configuration calls it: the folder holds a copy. */
+/* The name in the study's file or the configuration: the folder holds a copy. */
 static const char *plant_name(const ethd__folder *folder) {
   char unsaid[ETHD_MESSAGE_MAX];
   ethd__sim_settings device;

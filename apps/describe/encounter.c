@@ -4,7 +4,7 @@
 #include "tap/study.h"
 #include "text/file_name.h"
 
-/* A hand that comes, stops behind the wall, waits, and goes back as it came: times in s, lengths in m. */
+/* A hand that approaches, stops behind the wall, waits, and returns on the same path: times in s, lengths in m. */
 #define STEP 1e-3
 #define BEFORE 0.05 /* of the way, at full speed, before the touch */
 #define BEYOND 0.002
@@ -21,7 +21,7 @@ static double speed_at(double t) {
   return t < turns + STOPPING + comes ? -SPEED : 0;
 }
 
-/* To the left, which is where the wall is; it touches after BEFORE. */
+/* Moves left, to the wall, and touches after BEFORE. */
 static void make_movement(ethd__study *study) {
   static ethd_path_sample samples[900];
   const size_t count = sizeof samples / sizeof *samples;
@@ -33,7 +33,7 @@ static void make_movement(ethd__study *study) {
   study->movement = (ethd__movement){samples, count};
 }
 
-/* To the end of the movement: a tap would end a while after the touch. */
+/* Runs to the end of the movement; a tap would end a while after the touch. */
 static ethd_status run(ethd__stage *stage, const ethd__rule *rule, const ethd_sim_tap *tap) {
   ethd__tapping tapping;
   ethd_status status = ethd__tapping_begin(stage->sim, stage->control, tap, rule, &stage->rows, &tapping);

@@ -1,10 +1,9 @@
-/* A driver of one's own, for amplifiers on a bus that answers slowly: the control thread only touches two cells, and an
-   I/O thread does the exchanges. The amplifiers are a model here (J dw/dt = torque - b w); put yours into `exchange`.
-   As a program it asks whether the driver keeps its contract:
+/* Your own driver, for amplifiers on a slow bus: the control thread only uses two cells, and an I/O thread makes the exchanges. The amplifiers are a model here (J dw/dt = torque - b w); put yours into `exchange`.
+   As a program it tests the driver against its contract:
 
      cc driver.c $(pkg-config --cflags --libs ethd-drivers) -o driver && ./driver
 
-   As a shared object it is a driver of every program: [device] driver = file:driver.so
+   As a shared object it is a driver for every program: [device] driver = file:driver.so
 
      cc -shared -fPIC driver.c $(pkg-config --cflags ethd-drivers) -o driver.so */
 #include <ethd/cell.h>
@@ -28,7 +27,7 @@ typedef struct answer {
 typedef struct bus {
   ethd_cell *orders, *answers;
   _Atomic int32_t safe; /* set by any thread: no torque until the next start */
-  _Atomic int32_t anew; /* it was started: the I/O thread, which goes on meanwhile, begins from rest */
+  _Atomic int32_t anew; /* set by start: the running I/O thread begins from rest */
   _Atomic int32_t bad;  /* an answer was damaged: from the I/O thread to the control thread */
   answer seen;          /* the control thread's */
   ethd_command taken;   /* the I/O thread's, as all that follows */
@@ -36,8 +35,7 @@ typedef struct bus {
   int64_t now, heard;   /* ns */
 } bus;
 
-/* One exchange: torques out, angles back. Here a real driver blocks for as long as its bus takes. What the bus sends is
-   checked before anybody believes it; no comparison holds of NaN. When no good answer comes, the loop lets go. */
+/* One exchange: torques out, angles back. Here a real driver blocks for as long as its bus takes. Data from the bus are checked before use; every comparison with NaN is false. Without a good answer the loop removes the torque. */
 static ethd_status exchange(bus *b, int64_t now_ns) {
   double dt = b->now ? 1e-9 * (double)(now_ns - b->now) : 0;
   int alive = now_ns - b->heard <= WATCHDOG;
@@ -64,7 +62,7 @@ static ethd_status open_bus(const ethd_device_def *def, void **device, char mess
   return status;
 }
 
-/* Begins at rest, without a torque from before. An I/O thread may be in `service`: what is its own, it sets itself. */
+/* Begins at rest, without an earlier torque. An I/O thread may be in `service`, and sets its own data itself. */
 static ethd_status start(void *device) {
   bus *b = device;
   ethd_cell_put(b->orders, &(ethd_command){.safe = 1});
@@ -74,7 +72,7 @@ static ethd_status start(void *device) {
   return ETHD_OK;
 }
 
-/* No thread uses the bus any more: the last word on it is that there is no torque. */
+/* No thread uses the bus any more: the last message is zero torque. */
 static ethd_status stop(void *device) {
   bus *b = device;
   b->safe = 1;
@@ -108,7 +106,7 @@ static ethd_status write_torque(void *device, int64_t now_ns, const ethd_command
 
 static void safe(void *device) ETHD_RT { ((bus *)device)->safe = 1; }
 static ethd_limits limits(const void *device) {
-  ethd_limits limits = ethd_limits_device(); /* its gap, 5 ms, is the spacing of samples; a slower bus says its own */
+  ethd_limits limits = ethd_limits_device(); /* its gap, 5 ms, is the spacing of samples; a slower bus sets its own */
   return (void)device, limits.torque = 1, limits;
 }
 
@@ -119,7 +117,7 @@ static void close_bus(void *device) {
   free(b);
 }
 
-/* The one symbol by which a shared object is found. */
+/* The symbol that a shared object must export. */
 const ethd_driver ethd_driver_plugin = {.size = sizeof(ethd_driver),
                                         .abi = ETHD_DRIVER_ABI,
                                         .id = "mine",

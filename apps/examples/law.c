@@ -1,4 +1,4 @@
-/* A law of one's own, a whole plug-in.
+/* Your own law, a complete plugin.
 
      cc -shared -fPIC law.c -o mine.so $(pkg-config --cflags ethd)
      printf '[plugins]\nfile = mine.so\n[transition]\nlaw = mine\n' >mine.ini

@@ -1,13 +1,12 @@
 /* The far side of a teleoperation, modelled: a robot whose gripper follows the operator's ring (teleop.c says how to
-   start both), and a surface before it that moves and changes its shape. What it says of it is late, gets lost and
-   overtakes what was said before. When no orders come for LINK_DEAD the gripper stays where it is. */
+   start both), and a surface before it that moves and changes its shape. Its messages are late, get lost and overtake one another. Without orders for LINK_DEAD the gripper stays where it is. */
 #include "teleop.h"
 
 static word surface(double t, uint32_t number) { /* t: s */
   return (word){VERSION, number, {0.238 + 2e-3 * sin(3 * t), 0.25, 0}, (int)t % 2};
 }
 
-/* Speaks until it is answered, then for so many seconds; returns whether the link died before. */
+/* Sends until an answer comes, then for `seconds`; returns whether the link was lost before. */
 static int follow(int fd, ear *orders, double seconds, double delay, double loss) {
   double begin = now(), end = begin + TELEOP_WAIT, heard = 0, due[LINE];
   word line[LINE];

@@ -1,7 +1,6 @@
-/* Teleoperation: a robot's gripper, far away (robot.c), follows the operator's ring. What it may touch moves and
-   changes its shape; the operator's finger feels it as a wall. Datagrams are late, get lost and overtake one another;
-   nonsense is dropped; a surface that jumps comes as a wall that moves slowly. The strategy is swapped each second, a
-   contact's energy is bounded, and LINK_DEAD without a word brakes the ring and lets it go. Either side may begin:
+/* Teleoperation: a remote robot's gripper (robot.c) follows the operator's ring. The surface before it moves and changes its shape; the operator's finger feels it as a wall. Datagrams are late, get lost and overtake one another;
+   damaged ones are dropped; a surface that jumps becomes a wall that moves slowly. The strategy is swapped each second, a
+   contact's energy is bounded, and LINK_DEAD without a message brakes the ring and removes the torque. Either side may begin:
      cc robot.c -lm -o robot && cc teleop.c $(pkg-config --cflags --libs ethd-drivers) -o teleop
      export ETHD_DATA_DIR=$(pkg-config --variable=datadir ethd-drivers)
      (./teleop 4777 6 & ./robot 4777 7 20 10; wait)        PORT SECONDS, and of the robot DELAY_MS LOSS_PERCENT */
@@ -21,8 +20,8 @@ static volatile sig_atomic_t over; /* Ctrl-C */
 static void end(int signal) { over = signal; }
 
 /* The robot is a driver beside the ring's own. */
-static ethd_cell *newest; /* from the thread that listens to the control thread, whose the rest is */
-static word far;          /* the last word */
+static ethd_cell *newest; /* from the receiving thread to the control thread, which has the rest */
+static word far;          /* the last message */
 static double wall[6];    /* the wall's pose and speeds, which follow it */
 static int64_t heard, at; /* ns */
 
@@ -31,7 +30,7 @@ static ethd_status open_link(const ethd_device_def *def, void **out, char messag
 }
 static void close_link(void *device) { (void)device; }
 
-/* A pose that jumps would give energy away, so the wall follows the words smoothly; its speed is that of this. */
+/* A jump of the pose would add energy, so the wall follows the messages smoothly; its speed is that of this motion. */
 static ethd_status read_link(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
   static const double most[] = {WALL_SPEED, WALL_SPEED, WALL_TURN};
   double dt = at ? 1e-9 * (double)(now_ns - at) : 0;
@@ -56,7 +55,7 @@ static const ethd_driver link_driver = {.size = sizeof link_driver,
                                         .close = close_link};
 static const ethd_driver *const drivers[] = {&ethd_driver_sim, &link_driver, NULL};
 
-/* Waits for the robot's first word, and hears nobody else from then on. */
+/* Waits for the robot's first message, and receives from this sender alone from then on. */
 static int meet(int fd, ear *e) {
   struct sockaddr_in from;
   for (double begin = now(); now() - begin < TELEOP_WAIT && !over; usleep(1000)) {
@@ -65,7 +64,7 @@ static int meet(int fd, ear *e) {
     if (is_word(&e->last, size)) return connect(fd, (struct sockaddr *)&from, length);
     e->nonsense += size >= 0;
   }
-  return over ? 1 : fail("robot", "it doesn't speak: start it with the same port");
+  return over ? 1 : fail("robot", "no packets from it: start it with the same port");
 }
 
 typedef struct strategy {
@@ -82,11 +81,11 @@ static void swap(ethd_control *control, ethd_setup *setup, strategy *s, int law,
     for (int i = 0; i < 2; i++) s->lent[i] &= event.scene != s->scenes[i];
   if (shape == s->shape ? law == s->law : s->lent[shape]) return;
   ethd_setup_transition(setup, laws[law]), setup->bodies[0] = s->scenes[shape];
-  if (ethd_control_post(control, setup, &error)) return; /* the last one wasn't taken yet: again in a millisecond */
+  if (ethd_control_post(control, setup, &error)) return; /* the last one still waits: again in a millisecond */
   s->law = law, s->shape = shape, s->lent[shape] = 1, s->swaps++;
 }
 
-/* Leads the robot until the time is over, or until a fault has braked the ring and let it go. */
+/* Leads the robot until the time is over, or until a fault has stopped the ring. */
 static int lead(int fd, ear *e, ethd_loop *loop, ethd_control *control, ethd_setup *setup, double seconds) {
   int touching = 0;
   double begin = now(), t, pushed = 0; /* m/s: the wall is at the left, so it pushes a ring that moves right */

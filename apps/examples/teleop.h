@@ -1,4 +1,4 @@
-/* What both sides of the teleoperation say and how they listen: teleop.c is the ring's side, robot.c the far one. */
+/* Messages of both sides of the teleoperation, and their sockets: teleop.c is the ring's side, robot.c the remote one. */
 #ifndef ETHD__APPS_EXAMPLES_TELEOP_H
 #define ETHD__APPS_EXAMPLES_TELEOP_H
 
@@ -19,14 +19,14 @@
 #define LINE 64             /* datagrams under way, or read at a time */
 #define TELEOP_GAP 1000     /* words that can be lost in a row */
 
-typedef struct word { /* with numbers as this machine has them */
+typedef struct word { /* a message, with numbers in this machine's format */
   uint32_t version, number;
   double pose[3], shape; /* m, m, rad: of the robot's surface, or of the ring; 0 a plane, 1 a ball */
 } word;
 
 typedef struct ear {
-  word last;          /* the latest word; its number grows from word to word */
-  int nonsense, late; /* datagrams that were dropped: they are no words; a later word came first */
+  word last;          /* the latest message; its number grows from message to message */
+  int nonsense, late; /* dropped datagrams: damaged ones; ones after a later message */
 } ear;
 
 static inline double now(void) {
@@ -46,13 +46,13 @@ static inline int number(const char *text, double min, double max, double *out) 
   return end != text && !*end && *out >= min && *out <= max;
 }
 
-/* Whatever a datagram holds: what is no word goes no further. No comparison holds of NaN. */
+/* Returns whether a datagram is a valid message. Every comparison with NaN is false. */
 static inline int is_word(const word *w, ssize_t size) {
   return size == sizeof *w && w->version == VERSION && fabs(w->pose[0]) < 1 && fabs(w->pose[1]) < 1 &&
          fabs(w->pose[2]) < 4 && (w->shape == 0 || w->shape == 1);
 }
 
-/* Takes what has come; returns 1 if there is a later word than before. */
+/* Receives what has come; returns 1 if there is a later message. */
 static inline int hear(int fd, ear *e) {
   word w;
   ssize_t size;

@@ -31,8 +31,7 @@ void ethd__arm_try_all(const ethd__shooting *p, const ethd__fit_window *w, const
     for (int k = 0; k < w->rows; k++) trials[i].out[k] = measured[k] - trials[i].out[k];
 }
 
-/* Returns whether the transmission can be told from a rigid one: it can't if it swings faster than half the sampling
-   rate, or not at all. */
+/* Returns whether the transmission is observable: its oscillation must be slower than half the sampling rate. */
 static bool is_seen(const ethd__evidence *e, const ethd_plant *x, double least) {
   double reduced = x->motor_mass * (1 - x->motor_mass / least), w = sqrt(x->stiffness / reduced);
   return x->stiffness > 1 && w * e->period < M_PI && x->damping > -0.1 && x->damping < 4 * reduced * w;
@@ -62,7 +61,7 @@ static void thin(ethd__shooting *p, size_t most) {
   p->window_count = kept;
 }
 
-/* The first guess at a state: the measured angles, and speeds by differences over some ticks. */
+/* First guess of a state: measured angles, and speeds by differences over some ticks. */
 static void guess(const ethd__evidence *e, ethd__fit_window *w) {
   const int span = 5;
   size_t i = w->window.first;

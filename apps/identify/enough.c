@@ -23,13 +23,13 @@ static size_t windows_of(const ethd__evidence *e, double *way) {
   return windows;
 }
 
-/* Says why there are so few windows. */
+/* Gives the reason for the few windows. */
 static _Noreturn void refuse_few(const ethd__evidence *e, size_t windows) {
   const char *name = e->folders[0];
   if (e->not_numbers > e->count / 2)
     ethd__fail(
         ETHD_EXIT_INPUT,
-        "%s: angles or torques of %zu of %zu ticks aren't numbers: find out why with ethd-conform, and record again",
+        "%s: angles or torques of %zu of %zu ticks aren't numbers: find the cause with ethd-conform, and record again",
         name, e->not_numbers, e->count);
   if (e->uneven > e->count / 2)
     ethd__fail(

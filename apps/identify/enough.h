@@ -1,10 +1,10 @@
-/* Whether recordings say enough of a device to identify it. [main] */
+/* Checks whether recordings suffice to identify a device. [main] */
 #ifndef ETHD__APPS_IDENTIFY_ENOUGH_H
 #define ETHD__APPS_IDENTIFY_ENOUGH_H
 
 #include "identify/evidence.h"
 
-/* Ends the program where they don't, with a line that says what is missing and how to record it. count: rad of an
+/* If they don't suffice, ends the program with a line on what is missing and how to record it. count: rad of an
    encoder's count, 0 if it is ideal. */
 void ethd__evidence_enough(const ethd__evidence *evidence, double count);
 

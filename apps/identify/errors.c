@@ -1,4 +1,4 @@
-/* How sure the numbers of a fit are. */
+/* Standard errors of a fit's numbers. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,8 +20,7 @@ static double *numbers(size_t count) {
   return at;
 }
 
-/* Inverts a matrix with a unit diagonal by Gauss and Jordan's method. A coordinate that others explain to the last
-   digits gets an infinite variance. */
+/* Inverts a matrix with a unit diagonal by Gauss and Jordan's method. A coordinate that depends on others, up to rounding, gets an infinite variance. */
 static void invert(square_matrix a, square_matrix out, int n) {
   memset(out, 0, sizeof(square_matrix));
   for (int i = 0; i < n; i++) out[i][i] = 1;
@@ -41,8 +40,7 @@ static void invert(square_matrix a, square_matrix out, int n) {
   }
 }
 
-/* Fills each window's pull on the coordinates (its slopes times its residuals), and the curvature: the sum of the
-   products of slopes. */
+/* Fills each window's gradient (its slopes times its residuals), and the curvature: the sum of the products of slopes. */
 static void gather(const ethd__shooting *p, const double *residual, const double *slopes, square_matrix curvature,
                    square_matrix pulls, double *whole) {
   int n = p->chosen.count;
@@ -69,8 +67,7 @@ static double sandwich(square_matrix bread, square_matrix filling, int n, int i)
   return sum;
 }
 
-/* Fills standard errors and the step of Gauss and Newton. With few windows the fit has followed each of them, so that
-   their pulls scatter too little; the correction is that of leaving out one window at a time (MacKinnon and White
+/* Fills standard errors and the step of Gauss and Newton. With few windows the fit follows each of them, so their gradients scatter too little; the correction leaves out one window at a time (MacKinnon and White
    1985). */
 static void judge(const ethd__shooting *p, const double *residual, const double *slopes, double *errors, double *step) {
   int n = p->chosen.count;
@@ -116,8 +113,7 @@ void ethd__fit_errors(ethd__shooting *p, double errors[ETHD__UNKNOWNS], double s
 
 /* ---- recordings of another device ---- */
 
-/* Fits the masses to the windows of one recording alone: their logarithms, and standard errors of these. False: there
-   are too few windows, or they can't tell the masses. */
+/* Fits the masses to the windows of one recording alone: their logarithms, and standard errors of these. False: too few windows, or they don't determine the masses. */
 static bool weigh(const ethd__shooting *p, uint32_t recording, double mass[2], double error[2]) {
   double errors[N];
   ethd__shooting own;
@@ -138,8 +134,7 @@ static bool weigh(const ethd__shooting *p, uint32_t recording, double mass[2], d
   return isfinite(error[0] + error[1]);
 }
 
-/* Recordings of different devices leave a large residual together, which says little about either; so each recording is
-   fitted by itself. */
+/* Recordings of different devices have a large common residual, which says little about either; so each is fitted alone. */
 bool ethd__fit_stranger(const ethd__shooting *p, uint32_t *recording, double *shift) {
   double mass[2], error[2], first[2], first_error[2], most = STRANGE;
   bool found = false, begun = false;

@@ -25,8 +25,7 @@ static char *join(const char *folder, const char *name) {
 
 /* ---- one recording ---- */
 
-/* Marks the ticks in which the device got the torque that the row says: not after a stop or a fault, and not while the
-   torque rises. */
+/* Marks the ticks in which the device had the row's torque: not after a stop or a fault, and not while the torque rises. */
 static unsigned char *armed_ticks(const ethd__record_events *events, const ethd_trace *rows, size_t count,
                                   double period) {
   unsigned char *armed = malloc(count + 1);

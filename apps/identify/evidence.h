@@ -1,5 +1,4 @@
-/* What recordings say about an arm in motion: commands and encoders tick by tick, and when readings came. Values that
-   only a simulation knows aren't used. All [main]. */
+/* Data of recordings of a moving arm: commands and encoders in each tick, and the times of readings. The true state of a simulation isn't used. All [main]. */
 #ifndef ETHD__APPS_IDENTIFY_EVIDENCE_H
 #define ETHD__APPS_IDENTIFY_EVIDENCE_H
 
@@ -27,7 +26,7 @@ typedef struct ethd__delivery {
 } ethd__delivery;
 
 typedef struct ethd__evidence {
-  bool plugins; /* the recordings' configurations may load the plugins that they name */
+  bool plugins; /* the recordings' configurations may load their plugins */
   ethd_arm arm;
   double period, ring_radius;
   double (*q)[2];      /* rad */
@@ -39,10 +38,10 @@ typedef struct ethd__evidence {
   size_t delivery_count;
   char **folders; /* one for each recording */
   uint32_t recording_count;
-  size_t touched, unarmed; /* ticks left out: the finger was near; the torque isn't known */
+  size_t touched, unarmed; /* ticks left out: finger near; torque unknown */
   double clipped;          /* share of the moving ticks in which the guard cut the torque */
-  size_t not_numbers;      /* ticks whose angles or torques are none */
-  size_t uneven;           /* ticks that don't come a period after the one before */
+  size_t not_numbers;      /* ticks with NaN as angle or torque */
+  size_t uneven;           /* ticks that don't follow the one before by a period */
 } ethd__evidence;
 
 /* Adds the recording in `folder`, or those in folders below it. Refuses a recording whose arm, period or ring differs
@@ -53,8 +52,7 @@ ETHD_MUST_CHECK ethd_status ethd__evidence_add(ethd__evidence *evidence, const c
 /* An evidence that is all zero may be freed too. */
 void ethd__evidence_free(ethd__evidence *evidence);
 
-/* Returns to - from in s, whatever the stamps are that somebody's recording has: a difference wraps round like a
-   clock. */
+/* Returns to - from in s for any stamps: a difference that overflows wraps round. */
 static inline double ethd__evidence_apart(int64_t from_ns, int64_t to_ns) {
   return 1e-9 * (double)(int64_t)((uint64_t)to_ns - (uint64_t)from_ns);
 }

@@ -24,7 +24,7 @@
 typedef struct seen {
   ethd_vec at;
   double farthest, fastest; /* m, m/s */
-  atomic_int fault;         /* latched, after which there is nothing to record; 0: none */
+  atomic_int fault;         /* latched, ends the recording; 0: none */
   atomic_bool over;         /* set before the stop that ends the session, which is no fault */
 } seen;
 
@@ -37,7 +37,7 @@ static void take(void *seen_, const ethd_loop_row *row) {
   if (!s->fault) atomic_store(&s->fault, (int)t->fault);
 }
 
-/* Returns whether the guard stopped a ring that left its box, rather than a fault of the device. */
+/* Returns whether the guard stopped the ring because it left its box. */
 static bool left_box(const seen *s) { return s->fault == ETHD_FAULT_WORKSPACE || s->fault == ETHD_FAULT_SPEED; }
 
 /* ---- the session's configuration ---- */
@@ -151,7 +151,7 @@ static int record(const ethd__excitation *x, const ethd_config *c, double torque
             "use less --share or more --half\n",
             program_invocation_short_name, out.farthest);
   else if (!status && out.fault)
-    fprintf(stderr, "%s: %s: mend it and record again\n", program_invocation_short_name,
+    fprintf(stderr, "%s: %s: correct it and record again\n", program_invocation_short_name,
             ethd_fault_sentence((ethd_fault)out.fault));
   return status || out.fault ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE;
 }

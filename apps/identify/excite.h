@@ -1,4 +1,4 @@
-/* Makes a recording for identification, in which the device moves by itself. All [main]. */
+/* Makes a recording for identification, under multisine torques. All [main]. */
 #ifndef ETHD__APPS_IDENTIFY_EXCITE_H
 #define ETHD__APPS_IDENTIFY_EXCITE_H
 
@@ -14,7 +14,7 @@ typedef struct ethd__excitation {
   ethd_vec at;                   /* m in R_0, its middle */
 } ethd__excitation;
 
-/* Makes the dry run, prints what will be done, and runs the session. Returns the program's exit code. */
+/* Makes the dry run, prints the plan, and runs the session. Returns the program's exit code. */
 int ethd__excite(const ethd__excitation *excitation);
 
 #endif

@@ -25,7 +25,7 @@ static const ethd__chosen compliant = {{ETHD__MASS_X, ETHD__MASS_Y, ETHD__FORCE_
 
 /* ---- model ---- */
 
-/* Returns the factor by which the residuals' dependence on one another enlarges their variance; 1 for white ones. */
+/* Returns the factor by which correlation of the residuals enlarges their variance; 1 for white residuals. */
 static double dependence(const ethd__shooting *p, const double *residual) {
   enum { LAGS = 20 };
   double sums[LAGS + 1] = {0}, factor = 1;
@@ -50,7 +50,7 @@ static double dependence_of(ethd__shooting *p) {
   return factor;
 }
 
-/* Bayes' criterion (Schwarz 1978), for as many residuals as are independent, less the states. */
+/* Bayes' criterion (Schwarz 1978), for the number of independent residuals, less the states. */
 static double criterion(const ethd__shooting *p, double sum, double factor) {
   double freedom = (double)(p->rows - ethd__shooting_states(p)), count = freedom / factor;
   return count * log(fmax(sum / freedom, 1e-30)) + p->chosen.count * log(fmax(count, 2));
@@ -63,7 +63,7 @@ typedef struct contest {
   ethd_plant best;
   double least;  /* its criterion */
   double sum;    /* its sum of squares */
-  double factor; /* the dependence of its residuals; 0: not known yet */
+  double factor; /* variance factor of its residuals; 0: not known yet */
 } contest;
 
 static void compete(contest *c, const ethd_plant *start, const char *what) {
@@ -77,7 +77,7 @@ static void compete(contest *c, const ethd_plant *start, const char *what) {
   c->best = c->problem->plant;
 }
 
-/* Chooses what is fitted. A torque limit that nothing reached has no slope, so it isn't. */
+/* Chooses the unknowns. A torque limit that no command reached has no slope, so it isn't fitted. */
 static void choose(ethd__shooting *p, const ethd__chosen *chosen, const ethd_plant *start, double force) {
   p->chosen = *chosen;
   if (start->force_limit >= force) ethd__chosen_drop(&p->chosen, ETHD__FORCE_LIMIT);
@@ -109,13 +109,13 @@ static void compliant_starts(contest *c, const ethd_plant *stiff, double force) 
 
 /* ---- what isn't seen ---- */
 
-/* Returns the value of a number that isn't seen. A torque limit is at least as large as what was commanded. */
+/* Returns the value of an undetermined number. A torque limit is at least the largest command. */
 static double kept(const ethd__fit *f, const ethd_plant *plant, ethd__unknown u) {
   double value = ethd__unknown_value(plant, u);
   return u == ETHD__FORCE_LIMIT ? fmax(value, 1.001 * f->force) : value;
 }
 
-/* Returns the range that a number could have, of which its interval must be a small share to say something. */
+/* Returns the plausible range of a number; its interval must be a small share of it. */
 static double extent(const ethd__fit *f, const ethd__evidence *e, ethd__unknown u) {
   switch (u) {
   case ETHD__FRICTION: return fmax(f->plant.friction, 0.1 * f->force);
@@ -131,7 +131,7 @@ static double doubt(const ethd__fit *f, const ethd__evidence *e, ethd__unknown u
   return SIDE * error * (scale > 0 ? scale : 1) / extent(f, e, u);
 }
 
-/* Returns in how many ticks the command was larger than the limit. */
+/* Returns the number of ticks with a command over the limit. */
 static size_t reached(const ethd__evidence *e, double limit) {
   size_t ticks = 0;
   double link[2] = {e->arm.link1, e->arm.link2};
@@ -141,8 +141,7 @@ static size_t reached(const ethd__evidence *e, double limit) {
   return ticks;
 }
 
-/* Leaves a number out of the fit. A transmission's three numbers go together, because one of another device beside two
-   of this one would describe no transmission. */
+/* Leaves a number out of the fit. A transmission's three numbers stay or go together, since one of another device beside two of this one makes no sense. */
 static void leave(ethd__shooting *p, const ethd_plant *plant, ethd__fit *f, ethd__unknown which) {
   bool together = which >= ETHD__MOTOR_MASS && which <= ETHD__DAMPING;
   ethd__unknown first = together ? ETHD__MOTOR_MASS : which, last = together ? ETHD__DAMPING : which;
@@ -153,7 +152,7 @@ static void leave(ethd__shooting *p, const ethd_plant *plant, ethd__fit *f, ethd
   }
 }
 
-/* Leaves out the numbers that the recordings can't tell, the least certain first, and fits the rest again. */
+/* Leaves out the numbers that the recordings don't determine, the least certain first, and fits the rest again. */
 static void leave_unseen(ethd__shooting *p, const ethd_plant *plant, ethd__fit *f, double *errors) {
   for (;;) {
     ethd__unknown worst = ETHD__UNKNOWNS;
@@ -179,7 +178,7 @@ static void set_interval(ethd__fit *f, ethd__unknown u, double coordinate, doubl
   f->high[u] = ethd__unknown_from(u, coordinate + SIDE * error);
 }
 
-/* Few arms have a coupling, and it makes the simulator slow, so it is looked for last, by one step of Gauss and Newton.
+/* Few arms have a coupling, and it makes the simulator slow; so it is tested last, by one step of Gauss and Newton.
    It is fitted if 0 lies outside of its interval. */
 static void look_for_coupling(ethd__shooting *p, const ethd_plant *plant, ethd__fit *f, double *errors) {
   double step[ETHD__UNKNOWNS];
@@ -195,7 +194,7 @@ static void look_for_coupling(ethd__shooting *p, const ethd_plant *plant, ethd__
     f->sum = ethd__fit_squares(p, LONG, "coupling");
     leave_unseen(p, plant, f, errors);
     if (!f->unseen[ETHD__MASS_X] && !f->unseen[ETHD__MASS_Y]) return;
-    *f = before; /* the coupling only took the place of something else that the arm does */
+    *f = before; /* the coupling only stood for another effect */
     f->unseen[ETHD__COUPLING] = true;
     p->plant = uncoupled;
   }
@@ -210,8 +209,7 @@ static double rms_of(const ethd__shooting *p, const contest *c) {
   return c->sum > 0 ? sqrt(c->sum / fmax((double)(p->rows - ethd__shooting_states(p)), 1)) : 0;
 }
 
-/* The starts of both models compete on some windows, and the better model goes on with all. A rigid arm that leaves no
-   more than rounding does, `floor`, leaves nothing for a transmission to explain. */
+/* The starts of both models compete on some windows; the better model is fitted to all. If the residual of a rigid arm is as small as rounding, `floor`, a transmission isn't tried. */
 static void choose_model(ethd__shooting *quick, ethd__shooting *p, const ethd_plant *plant, double floor,
                          ethd__fit *f) {
   contest stiff = {.problem = quick, .best = *plant, .least = (double)INFINITY};

@@ -102,30 +102,31 @@ static void print_residual(FILE *out, const ethd__finding *f) {
   const ethd__whiteness *w = &f->whiteness;
   double l = f->evidence->arm.link1;
   fprintf(out, "\nresidual      %.4g rad rms (%.3g um at the ring)", w->rms, 1e6 * l * w->rms);
-  if (w->floor > 0) fprintf(out, ", %.3f times what rounding to counts leaves", w->rms / w->floor);
+  if (w->floor > 0) fprintf(out, ", %.3f times the residual of rounding to counts", w->rms / w->floor);
   fprintf(out,
           "\nwhiteness     %d of %d lags outside +-%.3g; the largest correlation is %.3f, %d tick%s apart; %zu ticks\n",
           w->outside, ETHD__LAGS, w->bound, w->correlation[w->largest], w->largest, w->largest > 1 ? "s" : "",
           w->ticks);
   if (!w->explained)
-    fprintf(out,
-            "NOT EXPLAINED by this model: the device does something that it hasn't, such as backlash, a cable with "
-            "hysteresis,\n              friction of another shape, or a finger that touched unseen; intervals are "
-            "too narrow then\n");
+    fprintf(
+        out,
+        "NOT EXPLAINED by this model: the device has an effect that the model hasn't, such as backlash, a cable with\n "
+        "             hysteresis, another friction law, or an unseen finger; the intervals are then too narrow\n");
 }
 
 static void print_arm(FILE *out, const ethd__finding *f) {
   const ethd__fit *fit = &f->fit;
   fprintf(out, "fitted to     %zu windows of %.3g s", f->problem.window_count, ETHD__WINDOW);
   if (f->problem.passed_over) fprintf(out, ", %zu of a long recording were passed over", f->problem.passed_over);
-  fprintf(out, "\nmodel         %s: ", isfinite(f->plant.stiffness) ? "the transmission gives way" : "rigid");
+  fprintf(out, "\nmodel         %s: ", isfinite(f->plant.stiffness) ? "the transmission is elastic" : "rigid");
   if (isfinite(fit->criterion[1]))
-    fprintf(out, "criterion %.1f rigid, %.1f with a transmission that gives way (less is better)\n", fit->criterion[0],
+    fprintf(out, "criterion %.1f rigid, %.1f with an elastic transmission (less is better)\n", fit->criterion[0],
             fit->criterion[1]);
   else
-    fprintf(out, "it leaves no more than rounding to counts does\n");
+    fprintf(out, "the residual is as small as rounding to counts\n");
   if (fit->unseen[ETHD__STIFFNESS])
-    fprintf(out, "              something gives way, but not as a transmission whose numbers could be told\n");
+    fprintf(out,
+            "              something is elastic, but not as a transmission whose numbers the recordings determine\n");
 }
 
 void ethd__page_print(FILE *out, const ethd__finding *f) {
@@ -170,8 +171,8 @@ ethd_status ethd__page_write(const ethd__finding *f, const char *path, char mess
   ethd_status status = ethd_replace_begin(path, &replace, message);
   if (status) return status;
   fprintf(replace.file,
-          "# Identified by ethd-identify from %u recording%s, %zu windows of %.3g s. What is behind a\n"
-          "# number is its unit and between which values it lies; what the recordings can't tell is kept as in %s.\n",
+          "# Identified by ethd-identify from %u recording%s, %zu windows of %.3g s. A comment\n# gives a number's "
+          "unit and interval; numbers that the recordings don't determine are those of %s.\n",
           f->evidence->recording_count, ethd__s(f->evidence->recording_count), f->problem.window_count, ETHD__WINDOW,
           f->base);
   fprintf(replace.file, "# Residual %.4g rad rms; %s.\n", f->whiteness.rms,

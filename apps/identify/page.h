@@ -1,4 +1,4 @@
-/* Presents what was found: to people, as a plant file, as a picture. All [main]. */
+/* Writes the result: as a page, a plant file, a picture. All [main]. */
 #ifndef ETHD__APPS_IDENTIFY_PAGE_H
 #define ETHD__APPS_IDENTIFY_PAGE_H
 
@@ -19,8 +19,7 @@ typedef struct ethd__finding {
   const char *base; /* where the kept numbers come from */
 } ethd__finding;
 
-/* Puts what was fitted and what the sensors showed into finding->plant, which has the kept numbers. A number that no
-   plant can have, such as a friction below 0, becomes the nearest possible one. */
+/* Puts the fitted numbers and those of the sensors into finding->plant, which holds the kept numbers. An impossible number, such as a friction below 0, becomes the nearest possible one. */
 void ethd__finding_plant(ethd__finding *finding);
 
 void ethd__page_print(FILE *out, const ethd__finding *finding);

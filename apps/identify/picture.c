@@ -74,7 +74,7 @@ ethd_status ethd__identify_draw(const ethd__finding *f, const char *csv, const c
   int joint = 0;
   (void)liveliest(f, &joint);
   snprintf(about, sizeof about,
-           "joint %d; residual %.3g rad rms, %.2f times what rounding leaves; largest correlation %.3f", joint + 1,
+           "joint %d; residual %.3g rad rms, %.2f times the residual of rounding; largest correlation %.3f", joint + 1,
            w->rms, w->floor > 0 ? w->rms / w->floor : (double)NAN, w->correlation[w->largest]);
   const ethd__picture_value values[] = {
       {"in", csv, true}, {"out", png, true}, {"about", about, false}, {NULL, NULL, false}};

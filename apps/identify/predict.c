@@ -43,7 +43,7 @@ static const double *commanded(const ethd__predictor *p, const ethd__shot *w, in
   return p->evidence->torque[tick < begin ? begin : tick > end ? end : tick];
 }
 
-/* Applies the torque of a tick, as the motors limit it. */
+/* Applies the torque of a tick, limited as the motors limit it. */
 static void drive(ethd__predictor *p, const ethd__shot *w, int64_t tick) {
   const double *torque = commanded(p, w, tick);
   for (int j = 0; j < 2; j++) {
@@ -105,8 +105,7 @@ void ethd__predict(ethd__predictor *p, const ethd__shot *w, const double *x, dou
 
 /* ---- several ---- */
 
-/* Several arms on their way through one window. Each counts time from its own changes of torque, so that their steps
-   have similar lengths although their delays differ. */
+/* Several arms in one window. Each counts time from its own changes of torque, so that their steps have similar lengths in spite of different delays. */
 typedef struct flock {
   const ethd__forecast *forecasts;
   const ethd__shot *window;

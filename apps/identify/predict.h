@@ -6,8 +6,7 @@
 #include "identify/evidence.h"
 #include "sim/arms.h"
 
-/* The state at a window's beginning: angles and speeds that the encoders see, rad and rad/s of both joints; where the
-   transmission gives way also the links' lead over them. */
+/* The state at a window's beginning: angles and speeds that the encoders see, rad and rad/s of both joints; with an elastic transmission also the links' lead over them. */
 enum { ETHD__STATE_RIGID = 4, ETHD__STATE_MOST = 8 };
 
 #define ETHD__WINDOW_MOST 512 /* ticks */
@@ -18,7 +17,7 @@ typedef struct ethd__shot {
   uint32_t recording;
 } ethd__shot;
 
-/* A plant that is prepared for the prediction of many windows. */
+/* A plant, prepared for the prediction of many windows. */
 typedef struct ethd__predictor {
   const ethd__evidence *evidence;
   ethd__body body;
@@ -29,19 +28,17 @@ typedef struct ethd__predictor {
 void ethd__predictor_prepare(const ethd__evidence *evidence, const ethd_plant *plant, double tolerance,
                              ethd__predictor *out);
 
-/* Fills the joint angles at the window's ticks, both of one tick side by side: 2 * window->count numbers. An arm that
-   runs away, as no device does, stands still from there on. */
+/* Fills the joint angles at the window's ticks, both of one tick side by side: 2 * window->count numbers. An arm that diverges stands still from there on. */
 void ethd__predict(ethd__predictor *predictor, const ethd__shot *window, const double *state, double *out);
 
-/* One of several predictions of a window that are made side by side. */
+/* One of several parallel predictions of a window. */
 typedef struct ethd__forecast {
   const ethd__predictor *predictor;
   const double *state;
   double *out; /* as ethd__predict fills it */
 } ethd__forecast;
 
-/* Makes up to ETHD__ARMS predictions at once. Their plants differ little, and either all have a transmission that gives
-   way or none. */
+/* Makes up to ETHD__ARMS predictions at once. Their plants differ little; all or none have an elastic transmission. */
 void ethd__predict_many(const ethd__forecast *forecasts, int count, const ethd__shot *window);
 
 #endif

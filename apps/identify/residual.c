@@ -20,7 +20,7 @@ static double products(const double *a, int count, int joint, int lag) {
   return sum;
 }
 
-/* Returns what the fitted states take out of a white residual's sum of products at this lag; that isn't colour. */
+/* Returns the share of a white residual's sum of products at this lag that the fitted states remove; it isn't colour. */
 static double taken(const ethd__shooting *p, const ethd__fit_window *w, int joint, int lag) {
   double sum = 0;
   int n = 2 * w->window.count;

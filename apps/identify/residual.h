@@ -7,12 +7,13 @@
 enum { ETHD__LAGS = 20, ETHD__TONES = 257 };
 
 typedef struct ethd__whiteness {
-  double rms, floor;                  /* rad; floor: what rounding to counts leaves, 0 for ideal encoders */
-  double correlation[ETHD__LAGS + 1]; /* of residuals so many ticks apart, where the arm moves by a count a tick */
-  double bound;                       /* 95 % of a white residual's correlations lie within +- this */
-  int outside, largest;               /* how many lags lie outside; the lag with the largest correlation */
-  size_t ticks;                       /* in which the arm moved so fast */
-  double density[ETHD__TONES];        /* rad^2/Hz from 0 to half the sampling rate */
+  double rms, floor; /* rad; floor: residual of rounding to counts, 0 for ideal encoders */
+  double correlation[ETHD__LAGS +
+                     1]; /* of residuals at this lag, ticks, where the arm moves by a count or more in each tick */
+  double bound;          /* 95 % of a white residual's correlations lie within +- this */
+  int outside, largest;  /* number of lags outside; lag of the largest correlation */
+  size_t ticks;          /* ticks with such motion */
+  double density[ETHD__TONES]; /* rad^2/Hz from 0 to half the sampling rate */
   int tones;
   bool explained; /* neither larger nor less white than rounding makes it */
 } ethd__whiteness;

@@ -125,7 +125,7 @@ static void find_rate(const ethd__evidence *e, double pace, ethd__bracket *out) 
   *out = (ethd__bracket){1 / (pace + mean), 1 / (pace + mean + 1.96 * error), 1 / (pace + mean - 1.96 * error)};
 }
 
-/* Brackets the latency: a reading that came at one tick wasn't there at the tick before. */
+/* Brackets the latency: a reading that came at one tick had not come at the tick before. */
 static void find_latency(const ethd__evidence *e, ethd__bracket *out) {
   double low = 0, high = (double)INFINITY;
   for (size_t i = 0; i < e->delivery_count; i++) {

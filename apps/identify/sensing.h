@@ -1,10 +1,10 @@
-/* Finds what recordings say about the sensors: encoder counts, and the ring's readings. All [main]. */
+/* Identifies the sensors: encoder counts, and the ring's readings. All [main]. */
 #ifndef ETHD__APPS_IDENTIFY_SENSING_H
 #define ETHD__APPS_IDENTIFY_SENSING_H
 
 #include "identify/evidence.h"
 
-/* A number and the two values between which it lies; NaN: not seen. */
+/* A number and its lower and upper bound; NaN: not determined. */
 typedef struct ethd__bracket {
   double value, low, high;
 } ethd__bracket;
@@ -16,7 +16,7 @@ typedef struct ethd__sensing {
   ethd__bracket latency, noise; /* s, m; the latency's ends are certain if it is constant, the noise's hold by 95 % */
 } ethd__sensing;
 
-/* ETHD_E_ARGUMENT: recordings whose encoders count differently are of two devices. */
+/* ETHD_E_ARGUMENT: recordings with different encoder counts are of two devices. */
 ETHD_MUST_CHECK ethd_status ethd__sensing_find(const ethd__evidence *evidence, ethd__sensing *out,
                                                char message[ETHD_MESSAGE_MAX]);
 

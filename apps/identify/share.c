@@ -12,7 +12,7 @@ typedef struct pile {
   void (*work)(void *, size_t);
   void *data;
   size_t count;
-  atomic_size_t next; /* that nobody has taken yet */
+  atomic_size_t next; /* first index that no thread has taken */
 } pile;
 
 static void work_off(pile *p) {

@@ -58,14 +58,13 @@ static void add(double *a, double factor, const double *b, int n) {
   for (int i = 0; i < n; i++) a[i] += factor * b[i];
 }
 
-/* Removes from `out` what the window's states explain. */
+/* Removes from `out` its projection on the window's states. */
 static void project(const ethd__shooting *p, const ethd__fit_window *w, double *out) {
   const double *basis = basis_of(p, w);
   for (int i = 0; i < w->rank; i++) add(out, -dot(basis + i * w->rows, out, w->rows), basis + i * w->rows, w->rows);
 }
 
-/* Adds to a state the correction that a residual asks for; returns by how much it reduces the squares if the slopes
-   hold. */
+/* Corrects a state by its residual; returns the predicted reduction of the squares. */
 static double correct(const ethd__shooting *p, const ethd__fit_window *w, const double *left, double *state) {
   const double *basis = basis_of(p, w);
   double promised = 0;
@@ -133,8 +132,7 @@ typedef struct job {
   double *out;
 } job;
 
-/* Moves the state by what its basis sees in the residual, or by a part of that where the whole doesn't reduce the
-   squares. Returns the sum of squares that is left. */
+/* Moves the state by the projection of the residual on its basis, or by a part of it if the whole doesn't reduce the squares. Returns the remaining sum of squares. */
 static double improve(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant, double *state,
                       double *left) {
   double moved[ETHD__STATES] = {0}, next[ETHD__STATES], now[ETHD__RESIDUALS_MOST], sum = dot(left, left, w->rows);
@@ -155,7 +153,7 @@ static void settle_one(const job *whole, ethd__fit_window *w) {
   const ethd__shooting *p = whole->problem;
   double left[ETHD__RESIDUALS_MOST];
   residual(p, w, whole->plants, w->state, left);
-  if (w->rank) (void)improve(p, w, whole->plants, w->state, left); /* with the slopes from before */
+  if (w->rank) (void)improve(p, w, whole->plants, w->state, left); /* with the earlier slopes */
   span(p, w, whole->plants);
   double sum = dot(left, left, w->rows);
   for (int i = 0; i < SETTLINGS; i++) {

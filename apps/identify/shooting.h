@@ -1,6 +1,5 @@
 /* The least-squares problem (multiple shooting): its residuals are measured minus predicted encoders over many short
-   windows, each of which begins in a state of its own. For every plant the states are fitted inside (variable
-   projection), so that only the plant's unknowns are left. All [main]. */
+   windows, each with its own initial state. The states are fitted for every plant (variable projection), so that only the plant's unknowns remain. All [main]. */
 #ifndef ETHD__APPS_IDENTIFY_SHOOTING_H
 #define ETHD__APPS_IDENTIFY_SHOOTING_H
 
@@ -24,7 +23,7 @@ typedef struct ethd__fit_window {
   int64_t predicted; /* ticks that were predicted so far */
 } ethd__fit_window;
 
-/* A plant and a state that are tried on a window; `out` becomes its residuals, `rows` numbers. */
+/* A plant and a state to try on a window; `out` becomes the residuals, `rows` numbers. */
 typedef struct ethd__trial {
   const ethd_plant *plant;
   const double *state;
@@ -50,7 +49,7 @@ void ethd__shooting_part(const ethd__shooting *shooting, uint32_t recording, eth
 
 void ethd__shooting_close(ethd__shooting *shooting);
 
-/* Finds the states, and the basis of what they can explain, anew for shooting->plant. */
+/* Finds the states and their basis again for shooting->plant. */
 void ethd__shooting_settle(ethd__shooting *shooting);
 
 /* Fills the residuals, rad, at these coordinates of shooting->chosen, with the best states near the settled ones. */
@@ -59,15 +58,15 @@ void ethd__shooting_residual(ethd__shooting *shooting, const double *coordinates
 /* Settles at these coordinates, and fills the residuals' derivatives by them: a column of `rows` numbers for each. */
 void ethd__shooting_slopes(ethd__shooting *shooting, const double *coordinates, double *out);
 
-/* Returns how many seconds all predictions have simulated so far. */
+/* Returns the simulated time of all predictions so far, s. */
 double ethd__shooting_simulated(const ethd__shooting *shooting);
 
-/* Returns how many numbers of state all windows have, by which the residuals' degrees of freedom are fewer. */
+/* Returns the number of states of all windows, which the degrees of freedom lack. */
 size_t ethd__shooting_states(const ethd__shooting *shooting);
 
 /* ---- the arm's predictions in a window [in arm_alone.c] ---- */
 
-/* Returns how many numbers a state of this plant has, and by how much one is changed to find its slope by differences. */
+/* Returns the size of this plant's state, and the step of a number for its slope by differences. */
 int ethd__arm_states(const ethd_plant *plant);
 double ethd__arm_step(int state);
 
@@ -75,7 +74,7 @@ double ethd__arm_step(int state);
 void ethd__arm_try_all(const ethd__shooting *shooting, const ethd__fit_window *window, const ethd__trial *trials,
                        int count);
 
-/* Returns whether a device can be like this plant, and whether the simulator can run it. */
+/* Returns whether this plant is possible, and the simulator can run it. */
 bool ethd__arm_is_possible(const ethd__shooting *shooting, const ethd_plant *plant);
 
 #endif

@@ -1,5 +1,5 @@
 /* Finds plants from which a fit starts. The second difference of a joint's angle over a span s on both sides of a tick
-   is its acceleration weighted with a triangle, and the torques that made it are weighted alike:
+   is its acceleration weighted with a triangle, and the torques that caused it have the same weights:
 
      I (q(t+s) - 2 q(t) + q(t-s)) = int (s - |u|) (torque(t+u-delay) - friction - viscous) du
 

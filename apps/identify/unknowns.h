@@ -15,7 +15,7 @@ typedef enum ethd__unknown {
   ETHD__FRICTION,
   ETHD__VISCOUS,
   ETHD__DELAY,
-  ETHD__MOTOR_MASS, /* these three only with a transmission that gives way */
+  ETHD__MOTOR_MASS, /* these three only with an elastic transmission */
   ETHD__STIFFNESS,
   ETHD__DAMPING,
   ETHD__UNKNOWNS

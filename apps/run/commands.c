@@ -95,7 +95,7 @@ static void ack(ethd__session *s, ethd__commands *c, char *rest) {
     return;
   }
   if (!ethd__session_acknowledge(s))
-    answer("error: the fault isn't over: %s", latched(s));
+    answer("error: the fault is still there: %s", latched(s));
   else
     answer(ethd_loop_armed(s->loop) ? "ok: acknowledged"
                                     : "ok: acknowledged; the device is disabled, enable starts it");

@@ -1,4 +1,4 @@
-/* Takes the loop's rows into a recording and to telemetry, and keeps the newest for whoever asks. It runs in a thread
+/* Takes the loop's rows into a recording and to telemetry, and keeps the newest row for other threads. It runs in a thread
    of its own or, on a virtual clock, after every tick. */
 #ifndef ETHD__APPS_RUN_RECORDER_H
 #define ETHD__APPS_RUN_RECORDER_H
@@ -23,7 +23,7 @@ typedef struct ethd__post {
 /* Another taker of every row, called on the recorder's thread. */
 typedef struct ethd__sink {
   void *self;
-  void (*take)(void *self, const ethd_loop_row *row); /* NULL: nobody */
+  void (*take)(void *self, const ethd_loop_row *row); /* NULL: none */
 } ethd__sink;
 
 typedef struct ethd__recorder {
@@ -34,8 +34,7 @@ typedef struct ethd__recorder {
   uint64_t every;            /* rows from one datagram to the next */
   uint64_t keeps;            /* rows from one that is recorded to the next; 1: each */
   pthread_t thread;
-  atomic_int stop,
-      stopping; /* stopping: a controlled stop has begun, and the fault by which it works is not reported */
+  atomic_int stop, stopping; /* stopping: a controlled stop has begun; its own fault is not reported */
   bool threaded;
   bool dated;             /* the first row's date is recorded */
   atomic_int sees_finger; /* 1: a reading of the finger has come */
@@ -45,12 +44,12 @@ typedef struct ethd__recorder {
   pthread_mutex_t lock; /* for what the main thread shares with the recorder's; no file is written under it */
   ethd__post posts[ETHD__POSTS_MAX];
   int waiting;               /* posts */
-  uint64_t swaps, clearings; /* clearings: rows so far whose step was told to clear faults */
+  uint64_t swaps, clearings; /* clearings: rows so far whose step cleared faults */
   ethd_loop_row latest;
 
-  /* of the recorder's thread, until it has ended */
+  /* the recorder's thread alone uses these until it has ended */
   uint64_t rows, lost;
-  uint64_t written; /* rows that were to be recorded */
+  uint64_t written; /* rows that the recording should have */
   int64_t fault;    /* of the last row */
   uint64_t kept;    /* rows in the recording, once it is closed */
   uint64_t faults[ETHD_FAULT_COUNT];

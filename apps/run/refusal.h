@@ -1,4 +1,4 @@
-/* Says why a loop didn't start, and what mends it. [main] */
+/* Gives the reason why a loop didn't start, and the remedy. [main] */
 #ifndef ETHD__APPS_RUN_REFUSAL_H
 #define ETHD__APPS_RUN_REFUSAL_H
 

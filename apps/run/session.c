@@ -117,7 +117,7 @@ bool ethd__session_acknowledge(ethd__session *s) {
   return !ethd__recorder_latest(&s->recorder).trace.fault;
 }
 
-/* Stops by a speed limit of 0: the guard stops the ring and lets go of it. */
+/* Stops by a speed limit of 0: the guard stops the ring and removes the torque. */
 void ethd__session_halt(ethd__session *s, bool told) {
   char message[ETHD_MESSAGE_MAX];
   ethd_setup setup = s->setup;
@@ -146,12 +146,13 @@ static ethd_status close_recording(ethd__session *s, char *message) {
   return status;
 }
 
-/* Says why the session failed, in the recording too. */
+/* Prints the reason of the failure, and records it. */
 static void tell_hang(ethd__session *s, ethd_status status, char *message) {
   const ethd_law *law;
   (void)ethd_loop_hangs(s->loop, &law);
   if (law)
-    (void)ethd__say(message, status, "the law %s doesn't return; its step hangs, and the device was let go", law->id);
+    (void)ethd__say(message, status, "the law %s doesn't return: its step hangs; the device's torque was removed",
+                    law->id);
   else
     (void)ethd__say(message, status, "the device %s doesn't return; the loop hangs in its code", s->config->device);
   if (s->recorder.recording) (void)!ethd_recording_event(s->recorder.recording, "fault", message);

@@ -22,10 +22,10 @@ typedef struct ethd__session {
 
 typedef struct ethd__session_options {
   const char *config, *record, *telemetry, *snapshot; /* NULL: none; a recording has a snapshot of its own */
-  uint32_t keeps;                                     /* ticks from one that is recorded to the next; 0 or 1: each */
+  uint32_t keeps;                                     /* record each keeps-th tick; 0 or 1: each */
   bool replace;                                       /* an earlier recording is replaced */
   bool group;                                         /* telemetry may go to a multicast or broadcast address */
-  const char *text;   /* stands for what the configuration's file holds; NULL: it is read */
+  const char *text;   /* text in place of the configuration's file; NULL: the file is read */
   const char *folder; /* where relative paths of [device] start; NULL: where the configuration is */
   ethd__sink sink;
   bool is_virtual;
@@ -41,7 +41,7 @@ ETHD_MUST_CHECK ethd_status ethd__session_open(const ethd__session_options *opti
 /* Returns whether a reading of the finger has come; waits a moment for the first one of a live session. */
 bool ethd__session_sees_finger(ethd__session *s);
 
-/* Damps the ring until it is still, then disables the device. `told`: a signal asked for it. */
+/* Damps the ring until it is still, then disables the device. `told`: a signal requested it. */
 void ethd__session_halt(ethd__session *s, bool told);
 
 /* Returns false if the loop's thread has ended or hangs. */
@@ -56,8 +56,7 @@ void ethd__session_free(ethd__session *s);
 ETHD_MUST_CHECK ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const char *kind,
                                                const char *detail, char message[ETHD_MESSAGE_MAX]);
 
-/* Acknowledges a latched fault and waits for the step that clears it, so that whoever asks next sees what came of it.
-   Returns false if a fault is latched after that step: it was not over, or another has come. */
+/* Acknowledges a latched fault and waits for the step that clears it, so that the next query sees the result. Returns false if a fault is latched after that step: the old one, or another. */
 bool ethd__session_acknowledge(ethd__session *s);
 
 /* Starts the device again and resets the controller; the torque rises from zero. */

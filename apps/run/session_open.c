@@ -40,7 +40,7 @@ static bool is_other_than_file(const char *path) {
 static ethd_status open_snapshot(ethd__session *s, const ethd__session_options *o, char *message) {
   char *path = o->snapshot ? strdup(o->snapshot) : ethd__path_join(o->record, "snapshot.npy");
   if (path && is_other_than_file(path)) {
-    ethd_status status = ethd__say(message, ETHD_E_FILE, "--snapshot: %s: isn't a file, which it must be", path);
+    ethd_status status = ethd__say(message, ETHD_E_FILE, "--snapshot: %s: isn't a file", path);
     free(path);
     return status;
   }

@@ -42,8 +42,8 @@ void ethd__remarks_print(FILE *out, ethd__session *s) {
   for (uint32_t i = 0; (remark = ethd_device_remark(s->device, i)) != NULL; i++) tell(out, remark, &next);
   if (!s->is_virtual && !ethd__session_sees_finger(s))
     tell(out,
-         "nothing measures the finger: the ring stands and follows nothing; name a driver that does, as in driver = "
-         "servo, ring, or reading_x and its like in the map (step 6)",
+         "no sensor measures the finger, so the ring stands still; add a driver, as in driver = servo, ring, or "
+         "reading_x, reading_y and reading_count in the map (step 6)",
          &next);
   ethd__shortfalls_print(out, shortfalls);
   if (next && shortfalls & RIGHTS) next = 1;
@@ -120,10 +120,10 @@ static const char *word(ethd_reaction reaction) {
 
 void ethd__faults_print(FILE *out) {
   fprintf(out,
-          "What may go wrong, how soon it is noticed, and what is done at first and at the worst.\n"
-          "count: the fault is counted, nothing else. degrade: the ring goes on without the part that failed.\n"
-          "stop: the ring is braked until it stands, then as zero. zero: no torque, the device is disabled, and the\n"
-          "fault is latched until it is acknowledged. refuse: nothing moves.\n\n"
+          "Faults, the time until each is noticed, and its first and its grave reaction.\ncount: the fault is only "
+          "counted. degrade: the ring goes on without the failed part.\nstop: the ring is braked until it stands, then "
+          "as zero. zero: no torque, the device is disabled, and the\nfault is latched until it is acknowledged. "
+          "refuse: nothing moves.\n\n"
           "row  %-20s%-9s%-9s%s\n",
           "noticed within", "at first", "at worst", "what");
   for (int i = 1; i < ETHD_FAULT_COUNT; i++)
@@ -157,7 +157,7 @@ void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) 
   print_skipped(out, s, &stats);
   print_figures(out, s);
   if (!atomic_load(&s->recorder.sees_finger))
-    fprintf(out, "%-10s never measured: the ring has followed nothing\n", "finger");
+    fprintf(out, "%-10s never measured: the ring didn't follow a finger\n", "finger");
   if (record) print_recorded(out, record, &s->recorder);
   print_snapshot(out, &s->recorder.snapshot);
   if (!s->is_virtual && !ethd_loop_shortfalls(s->loop)) fprintf(out, "%-10s none\n", "shortfalls");

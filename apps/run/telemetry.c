@@ -78,8 +78,8 @@ ethd_status ethd__telemetry_open(const char *what, const char *address, bool gro
   freeaddrinfo(found);
   if (*out >= 0) return ETHD_OK;
   if (many || reason == EACCES)
-    return ethd__say(message, ETHD_E_ARGUMENT, "%s: %.200s: many may listen; --telemetry-group says that they shall",
-                     what, address);
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: %.200s: a group address; allow it with --telemetry-group", what,
+                     address);
   return ethd__say(message, ETHD_E_FILE, "%s: %s: %s", what, address, strerror(reason));
 }
 

@@ -1,4 +1,4 @@
-/* Says what a scene holds. */
+/* Prints the contents of a scene. */
 #include <stdio.h>
 
 #include "cli/cli.h"

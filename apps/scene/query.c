@@ -1,4 +1,4 @@
-/* Says how far points are from a scene. */
+/* Calculates distances of points to a scene. */
 #include "cli/cli.h"
 #include "scene/scene.h"
 #include "text/csv.h"

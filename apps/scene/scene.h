@@ -13,10 +13,10 @@ typedef struct ethd__scene_args {
   const char *plot;                     /* ends in .png */
   char *drawing[ETHD__DRAWING_OPTIONS]; /* the options that convert knows, as --name=value */
   size_t drawing_count;
-  bool for_drawings; /* one that scenes don't take is among them */
+  bool for_drawings; /* an option for drawings alone is among them */
 } ethd__scene_args;
 
-/* Loads a scene file and says how long reading and building took; exits if it can't. */
+/* Loads a scene file and measures the time of reading and building; exits on failure. */
 ethd_scene *ethd__scene_load(const char *path, double *seconds);
 
 int ethd__scene_query(const ethd__scene_args *arg);

@@ -45,7 +45,7 @@ void ethd__scene_say_thin(const ethd_scene *scene, const char *before) {
     if (t < least) least = t, thinnest = i;
   }
   if (!thin || ethd_scene_object(scene, thinnest, &o) < 0) return;
-  printf("%s%zu solid%s thinner than %g mm, object %zu (%s) is %.3g mm: a ring that is pressed in beyond the middle is "
-         "pushed out on the other side; a segment or polyline doesn't turn its force round\n",
+  printf("%s%zu solid%s thinner than %g mm, object %zu (%s) is %.3g mm: a ring pressed in beyond the middle is pushed "
+         "out on the other side; the force of a segment or polyline doesn't change its side\n",
          before, thin, thin == 1 ? " is" : "s are", 1e3 * THIN, thinnest, ethd_shape_name(o.shape), 1e3 * least);
 }

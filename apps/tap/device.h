@@ -1,4 +1,4 @@
-/* What a configuration's [device] section says of the simulated device. */
+/* Reads the simulated device from a configuration's section [device]. */
 #ifndef ETHD__APPS_TAP_DEVICE_H
 #define ETHD__APPS_TAP_DEVICE_H
 

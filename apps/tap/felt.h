@@ -1,4 +1,4 @@
-/* What the finger did and felt, found in the same way for every law: no law's own idea of a meeting is used.
+/* Motion and contact of the finger, by the same rule for every law.
 
         hand's path      touch plane                 depth   how far the ring is behind the wall at the touch
           o-----------------|-->  v_hand             early   touched before the ring was behind the wall, or within

@@ -1,4 +1,4 @@
-/* How much larger each gain could be, as an experimenter finds it: turned up until the ring no longer rests. */
+/* Largest multiple of each gain, found as in an experiment: it is raised until the ring no longer rests. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -89,8 +89,8 @@ static void load_config(const char *config, const char *plant, bool plugins, eth
   out->path = config ? had(strdup(config)) : beside_plant(plant ? plant : ETHD__PLANT, ".ini");
   if (!config && access(out->path, F_OK))
     ethd__fail(ETHD_EXIT_INPUT,
-               "%s: %s; it is the configuration of the plant \"%s\": put it there, or name another one; q, n, b and "
-               "p came with theirs",
+               "%s: %s; the plant \"%s\" needs this configuration: put it there, or name another one; q, n, b and p "
+               "have theirs",
                out->path, strerror(errno), plant);
   check((plugins ? ethd_config_load : ethd_config_load_received)(out->path, &out->config, message), message);
   if (!out->config->scene) take_wall(out);

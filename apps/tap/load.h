@@ -1,4 +1,4 @@
-/* The simulated device that a program's user names: a configuration, a plant. All [main]. */
+/* Loads the simulated device that the user names: a configuration, a plant. All [main]. */
 #ifndef ETHD__APPS_TAP_LOAD_H
 #define ETHD__APPS_TAP_LOAD_H
 
@@ -14,7 +14,7 @@ typedef struct ethd__loaded {
 } ethd__loaded;
 
 /* Loads them. config: a file; NULL: the plant's own. plant: q, n, b or p, which came with the programs, or a file, with or
-   without .plant; NULL: the one that the configuration's [device] names, else n. simulated: any other device is
+   without .plant; NULL: the one that the configuration's [device] names, else q. simulated: any other device is
    refused; without it [device] is ignored. Exit 2 on bad input. */
 void ethd__load(const char *config, const char *plant, bool simulated, bool plugins, ethd__loaded *out);
 

@@ -132,7 +132,7 @@ static ethd_fault first_fault(const ethd__tap_rows *rows) {
   return ETHD_FAULT_NONE;
 }
 
-/* What a touch must be, once it is known to be in time. */
+/* Conditions on a touch that is in time. */
 static ethd__reason judge_touch(const ethd__tap_rows *rows, const ethd__rule *rule, size_t touch) {
   if (touch == rows->count) return ETHD_TAP_NO_CONTACT;
   if (pressing(rows, rule, touch) < rule->graze) return ETHD_TAP_GRAZING;

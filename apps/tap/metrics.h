@@ -1,4 +1,4 @@
-/* What is measured of a tap, from its ticks alone, so that a recording gives the same figures.
+/* Figures of a tap, from its ticks alone, so that a recording gives the same figures.
 
      ring's front, along n      t_r/vo            d_max = peak - next valley
             ^                     |     peak
@@ -27,7 +27,7 @@ typedef struct ethd__tap_rows {
   size_t count, room;
 } ethd__tap_rows;
 
-/* What decides whether a tap is valid.
+/* Decides whether a tap is valid.
      paper    the ring met the wall before the finger touched it, at the speed asked for
      finger   the hand's own path crosses the wall's touch plane at that speed, and the finger didn't touch before the
               ring was there (felt.h): a law that stops the ring before the wall is judged by the same taps */
@@ -37,7 +37,7 @@ typedef enum ethd__validity { ETHD_TAP_BY_PAPER, ETHD_TAP_BY_FINGER } ethd__vali
 typedef struct ethd__rule {
   ethd_vec n;         /* of the wall, into it */
   double period;      /* s */
-  int32_t side;       /* what is measured, speed and rebound: 0 the ring, 1 its motor side */
+  int32_t side;       /* side of speed and rebound: 0 the ring, 1 the motors */
   double speed, band; /* m/s: valid if the ring meets the wall at speed +- band */
   double meet;        /* m: the ring's centre along n as it meets the wall */
   double d_beta;      /* m */
@@ -86,7 +86,7 @@ typedef struct ethd__metrics {
   double v_rvo, v_of;              /* m/s: the ring's as it meets the wall, as the finger touches it */
   double v_of_tick;                /* m/s: the ring's at t_of */
   double d_max;                    /* m: first rebound of the measured side; 0 when it never turns back */
-  double d_max_ring;               /* m: likewise of the ring, whatever is measured */
+  double d_max_ring;               /* m: first rebound of the true ring */
   double v_rmin;                   /* m/s: smallest after t_of */
   double delta_s;                  /* ms: first braking tick from t_r/vo on to first vo tick; NaN: it braked before */
   double eps;                      /* m: offset at that vo tick */

@@ -13,38 +13,37 @@
 #define LEARN_MAX 1000
 
 static const char doc[] =
-    "Taps a virtual wall with a simulated encounter-type haptic display and a simulated or recorded finger, "
-    "under each transition law at each speed, and prints figures beside the paper's.\v"
-    "Plants are fitted to the paper's Table 1, not measured; nothing runs in real time. Tap k has the same "
-    "finger under every law. The same seed gives the same bytes on every machine.\n\n"
+    "Taps a virtual wall with a simulated encounter-type haptic display and a simulated or recorded finger, under each "
+    "transition law at each speed, and prints its figures beside the paper's.\v"
+    "Plants are fitted to the paper's Table 1, not measured; time is simulated. Tap k has the same finger under every "
+    "law. The same seed gives the same bytes on every machine.\n\n"
     "FILE.csv has columns t_s,x_m,y_m, or those of --columns (further ones are ignored), of a movement towards -x. "
-    "Commas, semicolons or tabs separate them. It is shifted so that its speed toward the wall, after its peak, has "
-    "fallen to the given speed (low, high: 0.2, 0.4 m/s) where the ring meets the wall, or, with --validity=finger, "
-    "where "
-    "the finger touches it. It is never scaled unless --scale says so. Speed is the slope of the "
-    "least-squares line through the samples within 5 ms, at least one on either side; the path itself is "
-    "not filtered. A tap on a recording begins once the ring is clear of the wall.\n\n"
-    "Every tap is in --csv. Means are over the valid taps, in which the ring met the wall before the finger touched, "
-    "at 0.2 (low) or 0.4 m/s (high) within the plant's bands (its section [study]), or at V +- (0.04 + 0.1 V) for a "
-    "number. Where a law stops the ring before the wall, all laws are shown once more by the rule of "
-    "--validity finger.\n\n"
+    "Commas, semicolons or tabs separate them. The movement is shifted so that its speed toward the wall, after its "
+    "peak, has fallen to the given speed (low, high: 0.2, 0.4 m/s) where the ring meets the wall, or, with "
+    "--validity=finger, where the finger touches it. Only --scale scales it. Speed is the slope of the least-squares "
+    "line through the samples within 5 ms, at least one on either side; the path itself is not filtered. A tap on a "
+    "recording begins once the ring is clear of the wall.\n\n"
+    "--csv has every tap. Means are over the valid taps: the ring meets the wall before the finger touches, at 0.2 "
+    "(low) or 0.4 m/s (high) within the bands of the plant's section [study], or at V +- (0.04 + 0.1 V) for a number "
+    "V. Where a law stops the ring before the wall, a second table shows all laws by the rule of --validity finger.\n\n"
     "Figures, along the wall's normal, positive into it:\n"
-    "  v_rvo    the ring's speed as it meets the wall\n"
-    "  v_of     the ring's speed at the touch, between two ticks; 0 is a wall's\n"
-    "  d_max    the ring's first rebound in the wall, of 0.1 mm at least\n"
-    "  v_rmin   its smallest speed after the touch: how fast it is thrown back\n"
-    "  Delta_s  the time of braking\n"
-    "  eps      how far behind its own place the wall is rendered\n"
-    "  v_hand   the hand's own speed where a finger touches the wall\n"
-    "  depth    of the ring in the wall at the touch\n"
-    "  felt     eps 60 ms after the touch; 0 under a law that never moves the wall\n\n"
+    "  v_rvo    speed of the ring when it meets the wall\n"
+    "  v_of     speed of the ring at the touch, interpolated; 0: at rest\n"
+    "  d_max    first rebound of the ring in the wall, at least 0.1 mm\n"
+    "  v_rmin   least speed of the ring after the touch: its rebound\n"
+    "  Delta_s  duration of the braking\n"
+    "  eps      distance of the rendered wall behind its place\n"
+    "  v_hand   speed of the hand where a finger touches the wall\n"
+    "  depth    depth of the ring in the wall at the touch\n"
+    "  felt     eps 60 ms after the touch; 0 if the law never moves the wall\n\n"
     "Examples:\n"
     "  ethd-tap\n"
     "  ethd-tap --taps 400 --csv taps.csv --trace traces\n"
     "  ethd-tap --finger motion/avraham_free_mit/avraham_ND_s02_be38_free.csv\n"
     "  ethd-tap --config mine.ini --transition mine,offset --record taps\n"
     "  ethd-tap --paper --plant q\n"
-    "Eight recorded movements come with the programs, in motion: a FILE.csv that isn't there is looked for among them.";
+    "Eight recorded movements are installed in the folder motion; a FILE.csv that doesn't exist here is searched "
+    "there.";
 
 enum {
   OPTION_SCALE = 256,
@@ -71,27 +70,30 @@ static const struct argp_option options[] = {
      "attempts for each law and speed (100; 10 with --finger; with --paper 400, twice as many at high speed)", 0},
     {"seed", 'r', "S", 0, "seed of every random number (1)", 0},
     {"plant", 'p', "q|n|b|p|FILE", 0,
-     "the simulated device and finger (default: that of --config, else q); a FILE.plant has FILE.ini beside it", 0},
+     "the simulated device and finger (default: that of --config, else q); FILE.ini stands beside FILE.plant", 0},
     {"finger", 'f', "FILE.csv", 0, "use a recorded movement as the hand's voluntary path", 0},
     {"columns", OPTION_COLUMNS, "T,X,Y", 0,
-     "the names of the movement's columns (t_s,x_m,y_m); -x_m turns the axis of x_m", 0},
-    {"units", OPTION_UNITS, "LENGTH[,TIME]", 0, "the movement's units: m, cm, mm or in, and s or ms (m,s)", 0},
+     "names of the movement's columns (t_s,x_m,y_m); -x_m reverses the sign of x_m", 0},
+    {"units", OPTION_UNITS, "LENGTH[,TIME]", 0, "units of the movement: m, cm, mm or in, and s or ms (m,s)", 0},
     {"scale", OPTION_SCALE, "K", 0, "multiply the recorded positions by K, 0.01 to 100", 0},
     {"validity", OPTION_VALIDITY, "paper|finger", 0,
-     "judge taps by how the ring meets the wall (paper, the default), or by the finger alone, alike for every law", 0},
-    {"learn", OPTION_LEARN, "K", 0, "taps before each counted one, from which a law can learn (0)", 0},
+     "a tap is valid by the ring's meeting with the wall (paper, the default), or by the finger alone, by one rule for "
+     "all laws",
+     0},
+    {"learn", OPTION_LEARN, "K", 0, "taps before each counted tap, from which a law can learn (0)", 0},
     {"set", OPTION_SET, "KEY=VALUE", 0,
-     "change a section.key of the configuration, or what the law knows of the device (arm.mass_x); may be given more "
-     "than once",
+     "change a section.key of the configuration or of the law's device data (arm.mass_x); may be given more than once",
      0},
     {"csv", OPTION_CSV, "OUT.csv", 0, "write a row for each tap", 0},
     {"record", OPTION_RECORD, "DIR", 0,
      "record every tick of every tap, for ethd-replay --verify, with truth.npy and taps.csv beside it", 0},
-    {"force", OPTION_FORCE, NULL, 0, "replace a recording or traces that are there", 0},
+    {"force", OPTION_FORCE, NULL, 0, "replace an existing recording or traces", 0},
     {"trace", OPTION_TRACE, "DIR", 0,
      "write DIR/LAW-SPEED.csv, the typical tap of each cell with a row per tick, for plots", 0},
     {"paper", OPTION_PAPER, NULL, 0,
-     "print what the paper says of its device as lines with bounds, and which of them this plant misses (400 taps)", 0},
+     "print the paper's statements on its device as lines with bounds, and mark the lines that this plant misses (400 "
+     "taps)",
+     0},
     {0},
 };
 
@@ -197,8 +199,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
       argp_error(state, "--scale, --columns and --units need --finger");
     arg.form = form_of_movement();
     if (arg.paper && (arg.finger || arg.csv || arg.record || arg.trace || arg.laws.count || arg.speeds.count))
-      argp_error(state, "--paper has its own laws and speeds, a synthetic hand and no files; --config, --plant, --set, "
-                        "--taps and --seed go with it");
+      argp_error(state, "--paper sets laws, speeds and a simulated hand, and writes no files; --config, --plant, "
+                        "--set, --taps and --seed go with it");
     return 0;
   default: return ARGP_ERR_UNKNOWN;
   }

@@ -28,7 +28,7 @@ static const struct {
 
 /* ---- taps ---- */
 
-/* What metrics.h doesn't have of a tap. */
+/* Figures of a tap beside those of metrics.h. */
 typedef struct watched {
   double turns; /* of the measured side */
   bool held;    /* the ring stayed before x_eps + BEYOND */

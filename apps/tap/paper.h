@@ -1,4 +1,4 @@
-/* What the paper says of its device, as lines with bounds: Table 1, the sentences of sections 3 and 4, and gains that
+/* The paper's statements on its device, as lines with bounds: Table 1, the sentences of sections 3 and 4, and gains that
    are "the highest possible while remaining stable". */
 #ifndef ETHD__APPS_TAP_PAPER_H
 #define ETHD__APPS_TAP_PAPER_H
@@ -10,7 +10,7 @@
 #define ETHD_PAPER_MEAN(mean, sd) (mean) - 0.76867 * (sd), (mean) + 0.76867 * (sd)
 #define ETHD_PAPER_SD(sd) 0.67545 * (sd), 1.91576 * (sd)
 
-/* X(name, group, low, high, unit, what it is) */
+/* X(name, group, low, high, unit, description) */
 #define ETHD_PAPER_LINES(X)                                                                   \
   X(ds_low, table, ETHD_PAPER_MEAN(3.11, 2.80), "ms", "mean Delta_s, low")                    \
   X(ds_low_sd, table, ETHD_PAPER_SD(2.80), "ms", "sd of Delta_s, low")                        \
@@ -27,7 +27,7 @@
   X(times_v_rmin, taps, 2, INFINITY, "", "high: |v_rmin|, smooth / offset")                   \
   X(times_v_of, taps, 1, INFINITY, "", "high: |v_of|, smooth / offset")                       \
   X(with_finger, taps, 0.25, 1, "", "high: share of v_of > 0, offset")                        \
-  X(early, taps, 0.4, 0.6, "m/s", "speed from which on the finger touches early")             \
+  X(early, taps, 0.4, 0.6, "m/s", "speed from which the finger touches early")                \
   X(under_20, taps, 0.9, 1, "", "high: share of Delta_s under 20 ms")                         \
   X(under_3, taps, 0.9, 1, "", "high: share of eps under 3 mm")                               \
   X(vo_first, taps, 0.9, 1, "", "high: share of offset with vo before the touch")             \

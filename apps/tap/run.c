@@ -47,7 +47,7 @@ static ethd_status check_law(const ethd__tap_plan *plan, const char *law, char *
   return status;
 }
 
-/* A key counts for the laws that have it; one that none has is a slip. */
+/* A key counts for the laws that have it; a key that no law has is an error. */
 static ethd_status check_gain(const ethd__tap_plan *plan, const ethd__gain *gain, char *message) {
   const ethd_config *config = plan->study->config;
   ethd_setup setup = config->setup;

@@ -1,4 +1,4 @@
-/* A tap on a device whose true state isn't known: what the controller knew stands for it. [any] */
+/* A tap on a device without a known true state: the controller's estimates stand for it. [any] */
 #ifndef ETHD__APPS_TAP_SEEN_H
 #define ETHD__APPS_TAP_SEEN_H
 

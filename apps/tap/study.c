@@ -56,8 +56,7 @@ static ethd_status find_wall(ethd__study *study, char *message) {
   study->n = near.n;
   if (steps > 0) return ETHD_OK;
   return ethd__say(message, ETHD_E_GEOMETRY, "the scene %s to the left at y = %g m",
-                   steps ? "has no wall that the ring meets on its way" : "leaves no room for a movement",
-                   ETHD_TAP_HEIGHT);
+                   steps ? "has no wall on the ring's way" : "leaves no room for a movement", ETHD_TAP_HEIGHT);
 }
 
 /* Where a finger of this radius touches the wall that the ring meets. */
@@ -208,7 +207,7 @@ static ethd_status run_tap(ethd__stage *stage, const ethd_sim_tap *tap, const et
   return status;
 }
 
-/* The law forgets, then learns from `study->learn` taps of the same kind in a row. */
+/* Resets the law's memory, then runs `study->learn` taps of the same kind, from which it learns. */
 static ethd_status learn(ethd__stage *stage, const ethd__speed *speed, uint64_t tap) {
   ethd_sim_tap circumstances;
   ethd_status status = ETHD_OK;

@@ -57,7 +57,7 @@ ETHD_MUST_CHECK ethd_status ethd__study_prepare(ethd__study *study, char message
 int ethd__way_to_wall(const ethd_scene *scene, double radius, ethd_vec direction, double outer, ethd_vec *x,
                       ethd_nearest *near);
 
-/* What runs taps under one law: controller and simulated device. */
+/* Runs taps under one law: a controller and a simulated device. */
 typedef struct ethd__stage {
   const ethd__study *study;
   const char *law;
@@ -79,7 +79,7 @@ ETHD_MUST_CHECK ethd_status ethd__stage_open(const ethd__study *study, const cha
                                              char message[ETHD_MESSAGE_MAX]);
 void ethd__stage_close(ethd__stage *stage);
 
-/* Draws a tap's circumstances; its recorded path is in stage->samples until the next one. */
+/* Draws a tap's random numbers; its recorded path is in stage->samples until the next one. */
 ETHD_MUST_CHECK ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__speed *speed, uint64_t tap,
                                              ethd_sim_tap *out);
 
@@ -91,9 +91,9 @@ ethd__view ethd__stage_view(const ethd__stage *stage, const ethd__speed *speed, 
 
 typedef struct ethd__result {
   ethd__metrics metrics, finger; /* by the study's rule; by the finger's, from the pad's first touch on */
-  double commanded;              /* m/s: what was drawn for this tap */
-  double finger_radius;          /* m: likewise */
-  uint32_t ticks, queried;       /* of which the scene was asked */
+  double commanded;              /* m/s: commanded speed of this tap, random */
+  double finger_radius;          /* m: radius of this tap's finger, random */
+  uint32_t ticks, queried;       /* ticks; those with a query of the scene */
   ethd__law_fault law_fault;     /* the first of a tap that ethd__stage_run made */
 } ethd__result;
 

@@ -75,11 +75,10 @@ static void print_laws(FILE *file, const ethd__study *study, const ethd__cell *c
   if (!stops) print_cells(file, cells, count, false);
   for (size_t i = 0; i < count && !stops; i++) stops = ethd__cell_stops(&cells[i]);
   if (!stops) return;
-  fprintf(
-      file,
-      "%sValid by the hand's own speed, whatever the ring does (--validity finger). depth: of the ring in the wall\n"
-      "at the touch; felt: offset of the wall 60 ms later, 0 under a law that never moves it.\n\n",
-      study->validity == ETHD_TAP_BY_FINGER ? "" : "\n");
+  fprintf(file,
+          "%sValid by the hand's speed alone (--validity finger). depth: of the ring in the wall at the touch;\nfelt: "
+          "offset of the wall 60 ms later, 0 if the law never moves it.\n\n",
+          study->validity == ETHD_TAP_BY_FINGER ? "" : "\n");
   print_cells(file, cells, count, true);
 }
 
@@ -145,7 +144,8 @@ static void print_means(FILE *file, const char *plant, const ethd__cell *cells, 
             : !strcmp(plant, "p") ? m->p
                                   : "-");
   }
-  fputs("What the paper says of smooth and offset is tested within people: by ethd-report, of a study's taps.\n", file);
+  fputs("The paper's comparisons of smooth and offset are within people: ethd-report tests them on a study's taps.\n",
+        file);
 }
 
 /* Figures of the paper that the table above hasn't, without a verdict. */
@@ -170,8 +170,8 @@ static void print_truth(FILE *file, const ethd__study *study, const ethd__cell *
         "encoder, and the finger, hand and sensor. The laws and gains are the paper's.\n",
         file);
   if (!isinf(study->plant.stiffness))
-    fputs("The compliant transmission is a hypothesis: sufficient for Table 1, not proven. Speeds are taken on the\n"
-          "encoder's side, as a lab would.\n",
+    fputs("The compliant transmission is a hypothesis: sufficient for Table 1, not proven. Speeds are measured on "
+          "the\nencoder's side, as in a lab.\n",
           file);
   print_beside(file, cells, count);
 }

@@ -1,4 +1,4 @@
-/* What ethd-tap prints. */
+/* Prints ethd-tap's tables. */
 #ifndef ETHD__APPS_TAP_TABLE_H
 #define ETHD__APPS_TAP_TABLE_H
 

@@ -10,7 +10,7 @@
 
 static double along(ethd_vec n, const double v[2]) { return n.x * v[0] + n.y * v[1]; }
 
-/* How deep a disc of this radius is behind the tangent line of the wall. */
+/* Depth of a disc of this radius behind the tangent line of the wall. */
 static double depth(const ethd__view *view, const double centre[2], double radius) {
   return along(view->rule.n, centre) + radius - view->wall;
 }

@@ -4,7 +4,7 @@
 
 #include "tap/metrics.h"
 
-/* What turns ticks into depths. */
+/* Data that turn ticks into depths. */
 typedef struct ethd__view {
   ethd__rule rule;
   double wall;                       /* m: of the wall along n */

@@ -15,7 +15,7 @@ typedef struct ethd__trace_in {
    finite. */
 ETHD_MUST_CHECK ethd_status ethd__trace_in_read(const char *path, ethd__trace_in *out, char message[ETHD_MESSAGE_MAX]);
 
-/* Returns row `row` as the controller takes it. */
+/* Returns row `row` as the controller's input. */
 ethd_sense ethd__trace_in_sense(const ethd__trace_in *in, size_t row);
 
 void ethd__trace_in_free(ethd__trace_in *in);

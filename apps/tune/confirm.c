@@ -25,8 +25,7 @@ static double left_over(const line_fit *l) {
   return sqrt(fmax(0, l->vv / l->n - v * v - slope * slope * tt));
 }
 
-/* Goes on with the tap that has just been run. Where the transmission gives way the motor's side swings first, and
-   most. INFINITY: the controller stopped. */
+/* Continues the last tap. With an elastic transmission the motor's side oscillates first, and most. INFINITY: the controller stopped. */
 static double swing_of(ethd__stage *stage) {
   line_fit line = {0};
   ethd_sense sense;
@@ -44,7 +43,7 @@ static double swing_of(ethd__stage *stage) {
   return left_over(&line);
 }
 
-/* How much the ring still moves long after each tap. */
+/* Residual speed of the ring long after each tap. */
 typedef struct unrest {
   double swing[ETHD_TUNE_SPEEDS][TAPS];
 } unrest;
@@ -72,8 +71,7 @@ static ethd_status measure(const ethd__tune_rig *rig, const ethd__tune_point *po
   return status;
 }
 
-/* The device's own unrest is no fault of the gains: twice that under the configuration's own gains is allowed, if those
-   keep the margins. */
+/* The device itself may move: twice its speed under the configuration's own gains is allowed, if those keep the margins. */
 static bool rests(const unrest *u, const unrest *own, double *worst) {
   bool good = true;
   *worst = 0;
@@ -107,7 +105,7 @@ static ethd_plant with_hand(const ethd_plant *plant, double share) {
   return p;
 }
 
-/* One disturbance that a point must stand with every hand: a section's gains are raised, or torques are late. */
+/* A disturbance under which a point must be stable with every hand: higher gains of a section, or later torques. */
 typedef struct unsettling {
   const char *what;
   const char *section; /* NULL: the gains stay as they are */

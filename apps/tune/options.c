@@ -11,18 +11,18 @@
 #define BUYS(name, low, high, buys) "  " name ": " buys ".\n"
 
 static const char doc[] =
-    "Finds gains for a device that is known from its plant file.\v"
-    "Tries gains of tracking, contact and transition and the filters' cut-offs, within ranges about the "
-    "configuration's own. What each of them buys:\n\n" ETHD_TUNE_KNOWN(
+    "Finds gains for a device that a plant file describes.\v"
+    "Tries gains of tracking, contact and transition and the filters' cut-offs, in ranges about the configuration's "
+    "values. The benefit of each:\n\n" ETHD_TUNE_KNOWN(
         BUYS) "\nPoints that don't keep the margins in every loop, along both axes and with every hand, are left out. "
-              "The others are tapped on the simulated device, in four rounds of ever fewer points. It shows the points "
-              "that no other beats in all of tracking, braking, wall and calm at once, and chooses the one with the "
-              "least weighted sum of the four (mean logarithms of their figures over the configuration's own); "
-              "--prefer doubles one weight. The plants are simulated: the device itself has the last word.\n\n"
-              "Margins are those of ethd-check: they count a transmission that gives way, but not friction, because it "
-              "stops small swings only. Where the configuration's own gains don't keep them (plant p's wall and brake "
-              "chatter on the motors' side), lower dampings are tried, and the table says what that costs. The choice "
-              "is confirmed in time, too, with gains and delay at their margin.\n\n"
+              "The others are tapped on the simulated device, in four rounds of ever fewer points. It prints the "
+              "Pareto front of tracking, braking, wall and calm, and chooses the point with the least weighted sum of "
+              "the four (mean logarithms of their figures over the configuration's own); --prefer doubles one weight. "
+              "The plants are simulated: test the gains on the device.\n\n"
+              "Margins are those of ethd-check: they include an elastic transmission, but no friction, because "
+              "friction stops only small oscillations. Where the configuration's own gains don't keep them (plant p's "
+              "wall and brake chatter on the motors' side), lower dampings are tried, and the table shows their cost. "
+              "A simulation confirms the choice, with gains and delay at their margin.\n\n"
               "Example:\n"
               "  ethd-tune --plant n --out tuned.ini --plot tuned.png\n"
               "  ethd-tune --plant mine.plant --config mine.ini --out best.ini";
@@ -30,14 +30,14 @@ static const char doc[] =
 enum { GAIN_MARGIN = 256, DELAY_MARGIN, HANDS, PASSIVE, PREFER, RANGE, POINTS_OPTION, TAPS_OPTION, CSV, PLOT, SEED };
 
 static const struct argp_option options[] = {
-    {"plant", 'p', "q|n|b|p|FILE", 0, "the device and its hand: q, n, b, p or a plant file", 0},
+    {"plant", 'p', "q|n|b|p|FILE", 0, "plant of the device and the hand: q, n, b, p or a plant file", 0},
     {"config", 'c', "C.ini", 0, "the configuration to begin from (default: the plant's own)", 0},
     {"transition", 't', "LAW", 0, "the transition law (default: the configuration's)", 0},
     {"out", 'o', "TUNED.ini", 0, "write the configuration with the chosen gains", 0},
     {"gain-margin", GAIN_MARGIN, "X", 0, "loops must be stable with gains X times as large (1.5)", 0},
     {"delay-margin", DELAY_MARGIN, "S", 0, "loops must be stable with torques S seconds later (0.0004)", 0},
-    {"hands", HANDS, "LIST", 0, "hands against the ring, as shares of the plant's; 0: none (0,0.5,1,2)", 0},
-    {"passive", PASSIVE, NULL, 0, "the wall must be passive with the device's own friction", 0},
+    {"hands", HANDS, "LIST", 0, "hands in the ring, as shares of the plant's hand; 0: no hand (0,0.5,1,2)", 0},
+    {"passive", PASSIVE, NULL, 0, "require a wall that is passive with the device's own friction", 0},
     {"prefer", PREFER, "tracking|brake|wall|calm", 0, "goal that counts twice in the choice", 0},
     {"range", RANGE, "KEY=LOW:HIGH", 0,
      "range of a section.key; KEY=VALUE holds it at a value; may be given more than once", 0},
@@ -45,7 +45,7 @@ static const struct argp_option options[] = {
     {"taps", TAPS_OPTION, "N", 0, "taps of the last round at each speed; earlier rounds have fewer (160)", 0},
     {"seed", SEED, "S", 0, "seed of the taps (1)", 0},
     {"csv", CSV, "OUT.csv", 0, "write every point", 0},
-    {"plot", PLOT, "OUT.png", 0, "draw the points, with --csv (gnuplot)", 0},
+    {"plot", PLOT, "OUT.png", 0, "draw the points of --csv (gnuplot)", 0},
     {0},
 };
 

@@ -136,7 +136,7 @@ ethd_status ethd__score_run(const ethd__tune_rig *rig, const ethd__tune_point *p
 
 /* ---- goals ---- */
 
-/* Returns the mean logarithm over both speeds; `least` is a difference that nobody feels. */
+/* Returns the mean logarithm over both speeds; `least`: a difference too small to feel. */
 static double log_ratio(const double *figure, const double *reference, double least) {
   double sum = 0;
   for (int s = 0; s < ETHD_TUNE_SPEEDS; s++) sum += log((figure[s] + least) / (reference[s] + least));

@@ -7,17 +7,16 @@
 
 #define ETHD_TUNE_SPEEDS 2 /* low and high */
 
-/* Every figure is better when it is smaller, and there is one for each speed. X(name, unit, what it is). They are means
-   over the taps in which the hand's own path crosses the wall at about that speed; eps, delta_s, d_max and v_touch over
-   those of them whose finger touched, and not early. */
-#define ETHD_TUNE_FIGURES(X)                                                                    \
-  X(early, "1", "share of the taps in which the finger touches before the ring meets the wall") \
-  X(lag, "m", "distance of ring and finger centres, rms, over the 50 ms before the wall")       \
-  X(eps, "m", "wall's offset 60 ms after the touch")                                            \
-  X(delta_s, "ms", "time of braking; 0 for a law that doesn't brake")                           \
-  X(d_max, "m", "first rebound")                                                                \
-  X(v_touch, "m/s", "size of the ring's speed as the finger touches")                           \
-  X(rough, "Nm", "change of the torque from tick to tick, rms, over the same 50 ms and the tap's last 50")
+/* Every figure is better when it is smaller, and there is one for each speed. X(name, unit, description). They are means
+   over the taps in which the hand's own path crosses the wall at about that speed; eps, delta_s, d_max and v_touch over those with a touch that isn't early. */
+#define ETHD_TUNE_FIGURES(X)                                                              \
+  X(early, "1", "share of the taps with a touch before the ring meets the wall")          \
+  X(lag, "m", "distance of ring and finger centres, rms, over the 50 ms before the wall") \
+  X(eps, "m", "wall's offset 60 ms after the touch")                                      \
+  X(delta_s, "ms", "time of braking; 0 for a law that doesn't brake")                     \
+  X(d_max, "m", "first rebound")                                                          \
+  X(v_touch, "m/s", "size of the ring's speed as the finger touches")                     \
+  X(rough, "Nm", "change of the torque from tick to tick, rms, over these 50 ms and the tap's last 50 ms")
 
 typedef struct ethd__tune_score {
 #define ETHD_TUNE_FIGURE(name, unit, brief) double name[ETHD_TUNE_SPEEDS];
@@ -30,7 +29,7 @@ typedef struct ethd__tune_score {
 
 extern const char *const ethd__tune_figure_names[ETHD_TUNE_FIGURE_COUNT];
 
-/* The hands that lean against the ring, as shares of the plant's finger mass, hand stiffness and damping. 0: a free
+/* Hands that press against the ring, as shares of the plant's finger mass, hand stiffness and damping. 0: a free
    ring. */
 typedef struct ethd__tune_hands {
   double shares[8];
@@ -60,9 +59,9 @@ ETHD_MUST_CHECK ethd_status ethd__score_run(const ethd__tune_rig *rig, const eth
 /* The result of trying a point's margins in time. */
 typedef struct ethd__tune_verdict {
   bool settles;
-  const char *what; /* what was at its margin in the last try */
+  const char *what; /* the quantity at its margin in the last try */
   double hand;      /* the hand's share in that try */
-  double swing;     /* m/s: how restless the ring then was at the end of a tap */
+  double swing;     /* m/s rms: speed of the ring at the end of a tap in that try */
 } ethd__tune_verdict;
 
 /* Tries the same margins on the whole device in time: taps with gains `margin.gain` times as large, with torques
@@ -70,8 +69,7 @@ typedef struct ethd__tune_verdict {
 ETHD_MUST_CHECK ethd_status ethd__score_confirm(const ethd__tune_rig *rig, const ethd__tune_point *point,
                                                 ethd__tune_verdict *out, char message[ETHD_MESSAGE_MAX]);
 
-/* What a person asks for. Each goal is the mean logarithm of figures over those of a reference: 0 is as good, less is
-   better. */
+/* The four goals. Each is the mean logarithm of figures over those of a reference: 0 is as good, less is better. */
 typedef enum ethd__tune_goal {
   ETHD_TUNE_TRACKING,
   ETHD_TUNE_BRAKE,
@@ -82,7 +80,7 @@ typedef enum ethd__tune_goal {
 
 extern const char *const ethd__tune_goal_names[ETHD_TUNE_GOALS];
 
-/* Fills the goals; INFINITY where too few fingers touched (a quarter of the reference's) to say anything. */
+/* Fills the goals; INFINITY if too few fingers touched (under a quarter of the reference's). */
 void ethd__score_goals(const ethd__tune_score *score, const ethd__tune_score *reference, double out[ETHD_TUNE_GOALS]);
 
 #endif

@@ -22,7 +22,7 @@ typedef struct ethd__tune_entry {
   double goals[ETHD_TUNE_GOALS]; /* relative to the round's entry 0 */
   double total;                  /* the goals' weighted sum; a goal over a tenth worse than entry 0's counts more */
   bool keeps;
-  int settled; /* at its margins in time: 1 yes, 0 no, -1 it wasn't tried */
+  int settled; /* settled in the simulation at its margins: 1 yes, 0 no, -1 not tried */
   bool front;  /* no other entry of its round is at least as good by every goal and better by one */
 } ethd__tune_entry;
 

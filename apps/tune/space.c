@@ -67,7 +67,7 @@ ethd_status ethd__space_open(const ethd_config *config, const char *law, ethd__t
     key->high = rounded(own * known[i].high);
   }
   if (out->count) return ETHD_OK;
-  return ethd__say(message, ETHD_E_ARGUMENT, "%s: nothing to tune: its laws have none of the gains that are known here",
+  return ethd__say(message, ETHD_E_ARGUMENT, "%s: nothing to tune: its laws have no gains that ethd-tune knows",
                    config->path ? config->path : "the configuration");
 }
 

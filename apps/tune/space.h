@@ -1,4 +1,4 @@
-/* The space that is searched: keys of a configuration, each within a range, and points in the box that they span. All
+/* The search space: keys of a configuration, each with a range, and points in their box. All
    [main]. */
 #ifndef ETHD__APPS_TUNE_SPACE_H
 #define ETHD__APPS_TUNE_SPACE_H
@@ -10,7 +10,7 @@
 #define ETHD_TUNE_VALUE_MAX 32
 
 /* The keys that are tuned unless --range says otherwise. X(name, the least share of its own value, the largest
-   multiple, what a larger value buys and what it costs). */
+   multiple, benefit and cost of a larger value). */
 #define ETHD_TUNE_KNOWN(X)                                                                   \
   X("tracking.k_t", 0.5, 8, "less lag and fewer early contacts; it costs a rougher torque")  \
   X("tracking.b_t", 0.5, 8, "a ring that swings less; it costs counts that are felt")        \
@@ -46,7 +46,7 @@ ETHD_MUST_CHECK ethd_status ethd__space_open(const ethd_config *config, const ch
 void ethd__space_lower(ethd__tune_space *space, const char *name, double share);
 
 /* Reads "contact.k_e=500:4000", which sets the range of a key, or "contact.k_e=1000", which holds it; a key that the
-   space lacks is added. Refuses what the configuration doesn't take. */
+   space lacks is added. Refuses values that the configuration refuses. */
 ETHD_MUST_CHECK ethd_status ethd__space_range(ethd__tune_space *space, const char *text,
                                               char message[ETHD_MESSAGE_MAX]);
 
@@ -61,7 +61,7 @@ ethd__tune_point ethd__space_at(const ethd__tune_space *space, uint64_t i);
 ethd__tune_point ethd__space_near(const ethd__tune_space *space, const ethd__tune_point *point, double spread,
                                   uint64_t number);
 
-/* Writes a value as text with four digits, which is what points have. */
+/* Writes a value as text with four digits, the precision of points. */
 const char *ethd__space_text(double value, char out[ETHD_TUNE_VALUE_MAX]);
 
 /* A point as the gains of a study; gains[] points into the space and into text[]. */

@@ -78,9 +78,8 @@ ethd_status ethd__tune_weigh(const ethd__tune_search *s, const ethd__tune_entry 
 
 void ethd__tune_print_worths(FILE *out, const ethd__tune_space *space, const ethd__tune_point *choice,
                              const ethd__tune_worths *worths) {
-  fprintf(out,
-          "What each gain buys: the figures with this gain alone put back, as multiples of the choice's. Over 1 is\n"
-          "what the gain buys, under 1 what it costs.\n");
+  fprintf(out, "Effect of each gain: the figures with this gain alone at its old value, as multiples of the choice's. "
+               "Over 1\nthe new value is better, under 1 it is worse.\n");
   fprintf(out, "  %-28s %10s %10s  %9s %9s %9s %9s\n", "gain", "own", "chosen", ethd__tune_goal_names[0],
           ethd__tune_goal_names[1], ethd__tune_goal_names[2], ethd__tune_goal_names[3]);
   for (size_t k = 0; k < space->count; k++) {

@@ -1,4 +1,4 @@
-/* Prints what a search found, and writes it as a table for pictures. [main] */
+/* Prints the result of a search, and writes it as a table for pictures. [main] */
 #ifndef ETHD__APPS_TUNE_TABLE_H
 #define ETHD__APPS_TUNE_TABLE_H
 
@@ -12,8 +12,7 @@ void ethd__tune_print(FILE *out, const ethd__tune_search *search, const ethd__tu
 /* Prints the point's margins without a hand, as ethd-check prints them; returns how many of its loops are unstable. */
 int ethd__tune_print_margins(const ethd__tune_rig *rig, const ethd__tune_point *point);
 
-/* What each gain of the choice buys: every goal's figure with this gain alone put back to the configuration's, over the
-   choice's. More than 1 is what the gain buys, less than 1 what it costs. */
+/* Effect of each gain: every goal's figure with this gain alone at the configuration's value, over the choice's figure. Over 1 the chosen value is better, under 1 it is worse. */
 typedef struct ethd__tune_worths {
   double times[ETHD_TUNE_KEYS_MAX][ETHD_TUNE_GOALS];
 } ethd__tune_worths;

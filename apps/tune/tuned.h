@@ -1,4 +1,4 @@
-/* The tuned configuration: the user's own file with other numbers in it, comments and all. [main] */
+/* The tuned configuration: the user's file with other numbers; its comments stay. [main] */
 #ifndef ETHD__APPS_TUNE_TUNED_H
 #define ETHD__APPS_TUNE_TUNED_H
 
