@@ -2,8 +2,6 @@
 # Devices that are described badly (each key of each shipped map, each setting of each driver), answer badly, or come from
 # bad files: one line, exit 1 or 2, and no motion. tests/bad_devices.py generates the cases; frames are damaged in
 # fuzz/test_bad_frames.c.
-set -u
+. tests/begin.sh
 case ${SAN:-} in *thread*) echo "SKIP: six thousand starts under a thread sanitizer take too long"; exit 77 ;; esac
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 "${PYTHON:-python3}" tests/bad_devices.py "$BUILD/bin" apps/config "$BUILD/tests/plugins" "$folder"

@@ -2,8 +2,7 @@
 # What the benchmarks say of errors, which no machine's speed changes, and that each CSV is enough for its picture.
 set -eu
 [ -z "${SAN:-}" ] || { echo "SKIP: benchmarks are measured without sanitizers"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 bench=$BUILD/tests/bench
 fail() { echo "$*"; exit 1; }
 

@@ -1,8 +1,7 @@
 #!/bin/sh
 # ethd-check as its users see it: what it prints is a configuration again; bounds, and what to change.
 set -eu
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 check=$BUILD/bin/ethd-check
 fail() { echo "$*"; exit 1; }
 says() { grep -q -e "$2" "$1" || { cat "$1"; fail "it doesn't say '$2'"; }; }

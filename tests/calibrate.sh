@@ -1,13 +1,9 @@
 #!/bin/sh
 # ethd-calibrate: the self-test, recorded counts, what is refused, and a guided session on a pty.
-set -u
+. tests/begin.sh
 program=$BUILD/bin/ethd-calibrate
 tests=$(cd "$(dirname "$0")" && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 
 # refuse CODE 'PATTERN' ARGUMENTS...
 refuse() {

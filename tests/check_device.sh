@@ -2,11 +2,7 @@
 # ethd-check on every kind of device, without touching it: no port that is named here exists. The time on the wire is held
 # against the frames' lengths as the Modbus specification has them (V1.1b3: function 3 has 8 bytes and 5 + 2n, 16 has 9 + 2n
 # and 8, with RTU's address and checksum), ten bits a byte, and 3.5 characters of silence before each.
-set -u
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
+. tests/begin.sh
 cp apps/config/*.map apps/config/*.plant apps/config/wall.scene "$folder"
 configure() { { sed '/^\[device\]/,$d' apps/config/n.ini; printf '[device]\n'; printf '%s\n' "$@"; } >"$folder/c.ini"; }
 check() { "$BUILD/bin/ethd-check" "$@" "$folder/c.ini" >"$folder/out" 2>"$folder/err"; }

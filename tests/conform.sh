@@ -1,11 +1,7 @@
 #!/bin/sh
 # ethd-conform on the drivers that need no hardware.
-set -u
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 conform=$BUILD/bin/ethd-conform
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 printf '[device]\ndriver = hello\n' >"$folder/hello.ini"
 # a finger that the ring doesn't feel leaves it alone
 sed 's/^pad_stiffness = [0-9]*/pad_stiffness = 0/' apps/config/n.plant >"$folder/free.plant"

@@ -1,11 +1,7 @@
 #!/bin/sh
 # ethd-convert: CSV and MCAP hold what the recording holds, as others and ethd-replay read it.
-set -u
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 convert=$BUILD/bin/ethd-convert
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 printf 'wait 0.5\ntransition smooth\nset contact.k_e 2000\nwait 9\n' |
   "$BUILD/bin/ethd-run" --virtual --duration 2 --record "$folder/rec" >/dev/null || fail "recording"
 "$convert" "$folder/rec" "$folder/rec.csv" >"$folder/log" 2>&1 || fail "rec.csv: $(cat "$folder/log")"

@@ -1,8 +1,7 @@
 #!/bin/sh
 # All programs use the same step: each calls a law that counts its calls once a tick, and the law answers as pd does.
 set -eu
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 fail() { echo "$*"; exit 1; }
 COUNTING_FILE=$folder/steps
 export COUNTING_FILE

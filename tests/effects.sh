@@ -1,12 +1,8 @@
 #!/bin/sh
 # The compiler's own proof that nothing marked ETHD_RT blocks; clang has it from version 20 on. ETHD_EFFECTS=pypi: where
 # there is no such clang, the one in PyPI's ziglang, pinned, is asked.
-set -u
+. tests/begin.sh
 set -f # options stand in a word
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 
 newest() {
   for clang in clang clang-25 clang-24 clang-23 clang-22 clang-21 clang-20; do
@@ -28,7 +24,7 @@ check() { # SOURCE INCLUDES...
   source=$1
   shift
   locale=
-  case $source in drivers/* | "$work"/pointer.c | "$work"/lock.c) locale='-include drivers/runtime/text/locale.h' ;; esac
+  case $source in drivers/* | "$folder"/pointer.c | "$folder"/lock.c) locale='-include drivers/runtime/text/locale.h' ;; esac
   $clang -std=gnu11 -O1 -ffp-contract=off -fno-math-errno -D_GNU_SOURCE $locale "$@" \
     -fsyntax-only -Wfunction-effects -Werror=function-effects "$source"
 }
@@ -38,10 +34,10 @@ done
 
 # What each kind of breach looks like: a call by name, one that is only inferred, one through a table, one after a sleep.
 seed() { # NAME SOURCE SED
-  sed "$3" "$2" >"$work/$1.c"
-  ! cmp -s "$2" "$work/$1.c" || { fail "$1: the seed changes nothing"; return; }
-  check "$work/$1.c" -I"${2%/*}" -Iinclude -Ilib -Idrivers -Idrivers/runtime >"$work/out" 2>&1 && fail "$1: the seeded breach isn't found"
-  grep -q "$4" "$work/out" || fail "$1: found otherwise: $(head -n 3 "$work/out")"
+  sed "$3" "$2" >"$folder/$1.c"
+  ! cmp -s "$2" "$folder/$1.c" || { fail "$1: the seed changes nothing"; return; }
+  check "$folder/$1.c" -I"${2%/*}" -Iinclude -Ilib -Idrivers -Idrivers/runtime >"$folder/out" 2>&1 && fail "$1: the seeded breach isn't found"
+  grep -q "$4" "$folder/out" || fail "$1: found otherwise: $(head -n 3 "$folder/out")"
 }
 seed heap lib/control/control.c 's|^  t.soft = take_clear(control);|  free(malloc(1));&|; 1i #include <stdlib.h>' "'free'"
 seed inferred lib/arm.c 's|^static double wrap.*{|&\n  putchar(10);|; 1i #include <stdio.h>' "'wrap'"

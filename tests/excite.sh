@@ -1,16 +1,12 @@
 #!/bin/sh
 # What ends an excitation in true time: a signal, a fault, a device that is lost, the guard, its duration, with the simulated device and with a driver
 # in a file of its own. Each leaves a closed recording that repeats to the bit and ends without a torque.
-set -u
+. tests/begin.sh
 [ -z "${SAN:-}" ] || { echo "SKIP: a sanitizer is too slow for a loop in true time"; exit 77; }
 top=$(cd "$(dirname "$0")/.." && pwd)
 bin=$BUILD/bin
 case $bin in /*) ;; *) bin=$top/$bin ;; esac
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 
 $CC -shared -fPIC -DHELLO=ethd_driver_plugin -I"$top/include" "$top/drivers/hello/hello.c" -o hello.so || fail "hello.so"
 printf '[device]\ndriver = file:hello.so\n' >hello.ini

@@ -4,8 +4,7 @@
 # leaves the variants of libm out.
 set -eu
 bin=${BUILD:-build}/bin
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+. tests/begin.sh
 
 # A finger that shakes within the ring, a frame every 3 ticks, a ray lost now and then: sums, products and
 # quotients only, which every awk works out alike.
@@ -32,8 +31,8 @@ replays() { # FOLDER
     for filter in ca hold alpha-beta cv; do
       law=$(echo "abrupt smooth offset" | cut -d' ' -f$((${#velocity} % 3 + 1)))
       printf '[velocity]\nmethod = %s\n[finger_fit]\nmethod = %s\n[finger_filter]\nmethod = %s\n[transition]\nlaw = %s\n[scene]\nfile = %s\n' \
-        $velocity "$2" $filter $law "$bin/../share/ethd/room.scene" >"$work/replay.ini"
-      "$bin/ethd-replay" --config "$work/replay.ini" --in "$work/frames.csv" --out "$1/$velocity-$filter-$2.csv" >/dev/null
+        $velocity "$2" $filter $law "$bin/../share/ethd/room.scene" >"$folder/replay.ini"
+      "$bin/ethd-replay" --config "$folder/replay.ini" --in "$folder/frames.csv" --out "$1/$velocity-$filter-$2.csv" >/dev/null
       first=$1 fit=$2
       shift 2
       set -- "$first" "$@" "$fit"
@@ -71,8 +70,8 @@ run() { # FOLDER: every plant, law and speed; the paper's laws in the columns th
     "$bin/ethd-tap" --plant $plant --taps 3 --seed 7 --transition abrupt,smooth,offset --csv "$1/$plant.csv" \
       --record "$1/$plant" >/dev/null
     for table in "$1/$plant.csv" "$1/$plant/taps.csv"; do
-      cut -d, -f1-15 "$table" >"$work/cut"
-      mv "$work/cut" "$table"
+      cut -d, -f1-15 "$table" >"$folder/cut"
+      mv "$folder/cut" "$table"
     done
     "$bin/ethd-tap" --plant $plant --taps 3 --seed 7 --transition offset,predictive --learn 2 \
       --set transition.learn=0.3 --validity finger --csv "$1/$plant-predictive.csv" \
@@ -86,21 +85,21 @@ run() { # FOLDER: every plant, law and speed; the paper's laws in the columns th
   (cd "$1" && find . -type f | LC_ALL=C sort | xargs sha256sum)
 }
 
-frames >"$work/frames.csv"
-run "$work/plain" >"$work/plain.sums"
+frames >"$folder/frames.csv"
+run "$folder/plain" >"$folder/plain.sums"
 if [ "${1:-}" = renew ]; then
-  cp "$work/plain.sums" tests/golden.sums
+  cp "$folder/plain.sums" tests/golden.sums
   echo "tests/golden.sums is new"
   exit 0
 fi
 masks='-FMA,-AVX2_Usable,-FMA_Usable -FMA,-AVX2,-AVX512F,-FMA4,-AVX -SSE4_1,-FMA,-AVX2,-ERMS'
 [ "${1:-}" = once ] && masks=
 for mask in $masks; do
-  GLIBC_TUNABLES=glibc.cpu.hwcaps=$mask run "$work/masked" >"$work/masked.sums"
-  cmp "$work/plain.sums" "$work/masked.sums" || { echo "the bytes change with GLIBC_TUNABLES $mask"; exit 1; }
-  rm -r "$work/masked"
+  GLIBC_TUNABLES=glibc.cpu.hwcaps=$mask run "$folder/masked" >"$folder/masked.sums"
+  cmp "$folder/plain.sums" "$folder/masked.sums" || { echo "the bytes change with GLIBC_TUNABLES $mask"; exit 1; }
+  rm -r "$folder/masked"
 done
-diff tests/golden.sums "$work/plain.sums" || {
+diff tests/golden.sums "$folder/plain.sums" || {
   echo "the bytes differ from tests/golden.sums; if numbers were meant to change: tests/golden.sh renew"
   exit 1
 }

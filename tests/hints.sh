@@ -1,15 +1,12 @@
 #!/bin/sh
 # What a program says when something is missing leads on: each hint is followed as it stands. And one thing is one thing:
 # "1 participant", not "1 participants".
-set -u
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+. tests/begin.sh
 [ -z "${SAN:-}" ] || { echo "SKIP: plugins are built without the sanitizer"; exit 77; }
 tree=$PWD
 export PATH="$BUILD/bin:$PATH"
-failed=0
 fail() { printf 'FAILED %s\n' "$*"; failed=1; }
-cd "$work" || exit 1
+cd "$folder" || exit 1
 says() { # EXIT PATTERN COMMAND...: one line on stderr, or a second one of argp
   wanted=$1 pattern=$2
   shift 2

@@ -1,10 +1,6 @@
 #!/bin/sh
 # Plugins that hang or end the program, seen from the programs: they say which one it was, and exit 1 in time.
-set -u
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
+. tests/begin.sh
 
 echo 'halfplane -1 0 -0.238' >"$folder/wall.scene"
 config() { printf '[plugins]\nfile = %s/tests/plugins/%s.so\n[scene]\nfile = wall.scene\n[transition]\nlaw = broken\n' "$BUILD" "$1" >"$folder/$1.ini"; }

@@ -1,14 +1,10 @@
 #!/bin/sh
 # ethd-identify: it finds plants again from recordings, also an arm that numpy integrates; it says what doesn't fit; refusals.
 # PLANTS=20 SECONDS_EACH=12 tries that many random plants and the intervals' coverage.
-set -u
+. tests/begin.sh
 bin=$BUILD/bin
 tests=$(cd "$(dirname "$0")" && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 [ -z "${SAN:-}" ] || { echo "SKIP: a sanitizer is too slow for fits"; exit 77; }
 
 if [ -n "${PLANTS:-}" ]; then

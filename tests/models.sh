@@ -1,21 +1,17 @@
 #!/bin/sh
 # The models of what threads and processes share, checked exhaustively by Spin: each holds, and each with its seeded
 # bug doesn't. Every line of the sources that a model names must still stand there. ETHD_MODELS=large: larger ones.
-set -u
+. tests/begin.sh
 command -v spin >/dev/null || { echo 'SKIP: spin isn'\''t there'; exit 77; }
 models=$(pwd)/tests/models
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 
 # names MODEL: what it is a model of
 names() {
-  grep '^   = ' "$models/$1.pml" | sed 's/^   = //' >"$work/lines"
-  [ -s "$work/lines" ] || fail "$1: it names no line"
+  grep '^   = ' "$models/$1.pml" | sed 's/^   = //' >"$folder/lines"
+  [ -s "$folder/lines" ] || fail "$1: it names no line"
   while IFS= read -r line; do
     grep -qF -- "${line#*: }" "${line%%: *}" || fail "$1: no longer in ${line%%: *}: ${line#*: }"
-  done <"$work/lines"
+  done <"$folder/lines"
 }
 
 # run MODEL FLAG...: prints errors and states; what fails to run has no errors at all
@@ -23,21 +19,21 @@ run() {
   model=$1
   shift
   (
-    cd "$work" && spin -a "$@" "$models/$model.pml" >spin.out 2>&1 && cc -O0 -w -DVECTORSZ=2048 -o pan pan.c &&
+    cd "$folder" && spin -a "$@" "$models/$model.pml" >spin.out 2>&1 && cc -O0 -w -DVECTORSZ=2048 -o pan pan.c &&
       ./pan -noclaim -m5000000 >safe.out 2>&1
     : >live.out
     if grep -q '^ltl' "$models/$model.pml"; then ./pan -a -f -m5000000 >live.out 2>&1; fi
     cat safe.out live.out
-  ) >"$work/out" 2>&1
-  if grep -q 'max search depth too small\|out of memory\|hash' "$work/out" && grep -q 'truncated\|too small' "$work/out"; then echo "incomplete 0"; return; fi
-  awk '/errors: / { seen = 1; errors += $NF } /states, stored/ { states += $1 } END { print seen ? errors + 0 : "none", states + 0 }' "$work/out"
+  ) >"$folder/out" 2>&1
+  if grep -q 'max search depth too small\|out of memory\|hash' "$folder/out" && grep -q 'truncated\|too small' "$folder/out"; then echo "incomplete 0"; return; fi
+  awk '/errors: / { seen = 1; errors += $NF } /states, stored/ { states += $1 } END { print seen ? errors + 0 : "none", states + 0 }' "$folder/out"
 }
 
 # holds MODEL FLAG...
 holds() {
   set -- "$@"
   found=$(run "$@")
-  [ "${found% *}" = 0 ] || { fail "$*: ${found% *} errors"; grep -h '^pan:\|rror' "$work/out"; }
+  [ "${found% *}" = 0 ] || { fail "$*: ${found% *} errors"; grep -h '^pan:\|rror' "$folder/out"; }
   echo "$*: holds in all of its ${found#* } states"
 }
 

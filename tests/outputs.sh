@@ -1,13 +1,9 @@
 #!/bin/sh
 # What identification, tuning and calibration write: no input is written over, and no output by another one. What happens
 # when standard output is closed, and when a disk is full.
-set -u
+. tests/begin.sh
 bin=$BUILD/bin
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 
 # refuse PATTERN COMMAND...: exit 2 and one line, before anything is worked out
 refuse() {

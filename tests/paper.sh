@@ -1,13 +1,10 @@
 #!/bin/sh
 # ethd-tap --paper: the lines of taps worked out again by NumPy from ethd-tap's own table and recordings; the limits of gains
 # against the closed forms of ethd-check; refusals.
-set -u
+. tests/begin.sh
 bin=$BUILD/bin
 share=$BUILD/share/ethd
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
-failed=0
 fail() { echo "FAILED: $*"; failed=1; }
 
 for plant in q n p; do

@@ -2,10 +2,7 @@
 # The passivity observer doesn't change the built-in laws: with a bound on the energy their taps have the same bytes. What
 # the law that looks ahead feeds forward before a touch reaches the finger only through the ring's motion: at the touch its
 # speed is 0.05 m/s rms, which is m v^2/2 = 0.15 mJ at 0.12 kg.
-set -u
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-failed=0
+. tests/begin.sh
 tap() { # OUT ARGUMENTS
   out=$1
   shift

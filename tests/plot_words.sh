@@ -1,12 +1,9 @@
 #!/bin/sh
 # No word of a report's pictures lies on another one or is cut off, with nine cells as with four; none of a tap's on a curve,
 # under any strategy.
-set -u
+. tests/begin.sh
 command -v gnuplot >/dev/null || { echo "SKIP: gnuplot (Debian: gnuplot-nox)"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 plots=$PWD/apps/plot
-failed=0
 study() { # NAME, LINES
   printf "[study]\nname = $1\nparticipants = 2\ntaps = 1\ntraining = 0\nattempts = 20\nsurvey = on\n$2" >"$folder/$1.study"
   "$BUILD/bin/ethd-study" --quiet "$folder/$1.study" --out "$folder/$1" >"$folder/out" 2>&1 || { cat "$folder/out"; exit 1; }

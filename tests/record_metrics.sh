@@ -1,8 +1,7 @@
 #!/bin/sh
 # The metrics of ethd-tap's CSV, recomputed from its recordings in another language; and the recordings replay.
 set -eu
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 tap=$BUILD/bin/ethd-tap
 python=${PYTHON:-python3}
 fail() { echo "$*"; exit 1; }

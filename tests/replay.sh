@@ -1,6 +1,5 @@
 #!/bin/sh
 # ethd-replay against a second derivation of the law, in another language.
 set -eu
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 python3 tests/replay.py "$BUILD/bin/ethd-replay" "$folder"

@@ -1,12 +1,8 @@
 #!/bin/sh
 # ethd-report: a page that stands alone, its files, a survey with answers, a grid, recorded fingers, and what it refuses.
-set -u
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 study=$BUILD/bin/ethd-study
 report=$BUILD/bin/ethd-report
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 
 cat >"$folder/small.study" <<'END'
 [study]

@@ -1,13 +1,10 @@
 #!/bin/sh
 # Every figure of a report's tables, worked out again in R.
-set -u
+. tests/begin.sh
 command -v gnuplot >/dev/null || { echo "SKIP: gnuplot (Debian: gnuplot-nox)"; exit 77; }
 command -v Rscript >/dev/null || { echo "SKIP: Rscript (Debian: r-base-core)"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 study=$BUILD/bin/ethd-study
 report=$BUILD/bin/ethd-report
-failed=0
 run() { "$@" >"$folder/out" 2>&1 || { echo "FAILED $*: $(cat "$folder/out")"; exit 1; }; }
 mkdir "$folder/made"
 run tar -xJf tests/reference/report/studies.tar.xz -C "$folder/made"

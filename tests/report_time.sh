@@ -1,9 +1,7 @@
 #!/bin/sh
 # A report's time grows as its participants do: eight times as many take no more than ten times the processor's time.
-set -u
+. tests/begin.sh
 command -v gnuplot >/dev/null || { echo "SKIP: gnuplot (Debian: gnuplot-nox)"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 for people in 100 800; do
   "$BUILD/bin/ethd-study" "$BUILD/share/ethd/crowd.study" --simulate $people --out "$folder/$people" >"$folder/out" 2>&1 &&
     "$BUILD/bin/ethd-study" --merge "$folder/$people" >"$folder/out" 2>&1 || { cat "$folder/out"; exit 1; }

@@ -1,21 +1,11 @@
 #!/bin/sh
 # ethd-run: commands, recordings that replay, telemetry, signals, a killed run, the virtual clock's repeatability.
 # No time is asserted, only order.
-set -u
+. tests/begin.sh
 case ${SAN:-} in *thread*) echo "SKIP: a thread sanitizer's threads don't fit into the loop's stack"; exit 77 ;; esac
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 run=$BUILD/bin/ethd-run
 verify="$BUILD/bin/ethd-replay --verify"
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 
-# says FILE PATTERN...: each pattern stands in the file
-says() {
-  file=$1
-  shift
-  for pattern; do grep -q -e "$pattern" "$file" || { fail "no $pattern in:"; cat "$file"; }; done
-}
 replays() { $verify "$1" >"$folder/verify" 2>&1 && grep -q 'equal to the bit' "$folder/verify" || { fail "$1: $(cat "$folder/verify")"; }; }
 
 cat >"$folder/device.ini" <<'END2'

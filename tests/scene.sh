@@ -1,11 +1,8 @@
 #!/bin/sh
 # ethd-scene: distances of points against numbers worked out by hand, the summary, and each refusal.
-set -u
+. tests/begin.sh
 program=$BUILD/bin/ethd-scene
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
-failed=0
 fail() { echo "$*"; failed=1; }
 
 cat >walls.scene <<'END'

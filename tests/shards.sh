@@ -1,12 +1,8 @@
 #!/bin/sh
 # ethd-study --simulate: 1, 2, 3, 4 and 7 workers, GNU parallel, mpirun and a worker that was killed: equal bytes.
-set -u
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 study=$BUILD/bin/ethd-study
 export ETHD_STUDY="$study"
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 
 cat >"$folder/grid.study" <<'END'
 [study]

@@ -1,12 +1,8 @@
 #!/bin/sh
 # Folders, drawings and names from a stranger: they are looked at and nothing of theirs runs, nothing is read or written elsewhere,
 # and a terminal obeys none of their words.
-set -u
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 bin=$BUILD/bin
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 python=${PYTHON:-python3}
 
 # Every way to run a command or to leave the folder ends in this file.

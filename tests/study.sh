@@ -1,16 +1,13 @@
 #!/bin/sh
 # ethd-study: a session's data, order and replay; killed at any call, out of room, misused. No time is asserted.
 # ETHD_STUDY_KILLS: how many random moments (6; make stress has 50).
-set -u
-folder=$(mktemp -d)
+. tests/begin.sh
 mounted=
 trap '[ -z "$mounted" ] || umount "$folder/small"; rm -rf "$folder"' EXIT
 study=$BUILD/bin/ethd-study
 python3=${PYTHON:-python3}
 replay="$BUILD/bin/ethd-replay --verify"
 kills=${ETHD_STUDY_KILLS:-6}
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 
 # ---- the paper's study: 3 x 3 x 4 ----
 "$study" --out "$folder/paper" >"$folder/out" 2>&1 || fail "the paper's study: $(tail -n 1 "$folder/out")"

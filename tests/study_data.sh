@@ -1,12 +1,8 @@
 #!/bin/sh
 # A study's data: whose hand, free text, damaged stores, sums, participants who leave, stations, orders, sidecars, refusals.
-set -u
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 study=$BUILD/bin/ethd-study
 python3=${PYTHON:-python3}
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 refuse() { # EXIT PATTERN COMMAND..: one line on stderr, and the folders $kept.. stay as they were
   code=$1 pattern=$2
   shift 2

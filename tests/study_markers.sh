@@ -1,12 +1,8 @@
 #!/bin/sh
 # A study's markers by UDP, beside a receiver of Python's own sockets: each trial of taps.csv, its begin, touch and end; a
 # port that nobody listens at. No time is asserted but the tick's.
-set -u
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 study=$BUILD/bin/ethd-study
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 
 cat >"$folder/receive.py" <<'END'
 import socket, subprocess, sys, threading

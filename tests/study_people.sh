@@ -1,12 +1,9 @@
 #!/bin/sh
 # ethd-study with people, on ethd-run's device: the simulated one with its own finger stands for both. No time is asserted.
-set -u
-folder=$(mktemp -d)
+. tests/begin.sh
 server=
 trap 'rm -rf "$folder"; [ -z "$server" ] || kill $server 2>/dev/null' EXIT
 study=$BUILD/bin/ethd-study
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 
 cp apps/config/wall.scene "$folder"
 device() { # FILE SETTINGS: plant n's configuration with another device

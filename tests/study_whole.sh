@@ -2,13 +2,10 @@
 # A whole study at two stations: 12 simulated people, and 2 whom the mouse leads on a screen, with consent, hand-over and
 # questions; ended at ten random moments by SIGKILL, gone on with, merged, reported. Nothing is lost, doubled or mislabelled.
 # ETHD_STUDY_WHOLE=1 (make stress): the paper's speeds and three valid taps a cell. No time is asserted.
-set -u
+. tests/begin.sh
 [ -z "${SAN:-}" ] || { echo "SKIP: the window's libraries aren't made for sanitizers"; exit 77; }
-folder=$(mktemp -d)
 server=
 trap 'rm -rf "$folder"; [ -z "$server" ] || kill $server 2>/dev/null' EXIT
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 study=$BUILD/bin/ethd-study
 speeds=low taps=1 attempts=1 training=0
 [ -z "${ETHD_STUDY_WHOLE:-}" ] || { speeds=low,high; taps=3; attempts=4; training=1; }

@@ -1,13 +1,10 @@
 #!/bin/sh
 # What libethd.so and libethd-drivers.so show, what libethd.so needs; what the control side's objects need.
 #   BUILD=build sh tests/symbols.sh renew    writes tests/exported-symbols*.txt anew
-set -u
+. tests/begin.sh
 LC_ALL=C
 export LC_ALL
 so=$BUILD/libethd.so.0
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-failed=0
 fail() { echo "$*"; failed=1; }
 
 # Names marked ETHD_API in the public headers, comments and preprocessor lines left out; ethd_plugin, ethd_driver_plugin are
@@ -41,35 +38,35 @@ declared() {
 }
 
 exported() { nm -D --defined-only "$1" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort -u; }
-exported "$so" >"$work/exported"
-exported "$BUILD/libethd-drivers.so.0" >"$work/exported-drivers"
+exported "$so" >"$folder/exported"
+exported "$BUILD/libethd-drivers.so.0" >"$folder/exported-drivers"
 if [ "${1:-}" = renew ]; then
   for kind in '' -drivers; do
-    cp "$work/exported$kind" "tests/exported-symbols$kind.txt"
-    echo "tests/exported-symbols$kind.txt: $(wc -l <"$work/exported$kind") symbols"
+    cp "$folder/exported$kind" "tests/exported-symbols$kind.txt"
+    echo "tests/exported-symbols$kind.txt: $(wc -l <"$folder/exported$kind") symbols"
   done
   exit
 fi
 if [ -n "${SAN:-}" ]; then echo "SKIP: a sanitizer's build needs the sanitizer's symbols"; exit 77; fi
 
-cat "$work/exported" "$work/exported-drivers" | grep -vE '^ethd_[a-z]' >"$work/foreign" && fail "exported, but not called ethd_*:" && cat "$work/foreign"
+cat "$folder/exported" "$folder/exported-drivers" | grep -vE '^ethd_[a-z]' >"$folder/foreign" && fail "exported, but not called ethd_*:" && cat "$folder/foreign"
 for archive in libethd.a libethd-drivers.a; do
-  nm -g --defined-only "$BUILD/$archive" | awk 'NF == 3 { print $3 }' | grep -v '^ethd_' >"$work/foreign" &&
-    fail "$archive: global, but not called ethd_*:" && cat "$work/foreign"
+  nm -g --defined-only "$BUILD/$archive" | awk 'NF == 3 { print $3 }' | grep -v '^ethd_' >"$folder/foreign" &&
+    fail "$archive: global, but not called ethd_*:" && cat "$folder/foreign"
 done
 for kind in '' -drivers; do
   list=tests/exported-symbols$kind.txt
-  diff "$list" "$work/exported$kind" >"$work/diff" && continue
+  diff "$list" "$folder/exported$kind" >"$folder/diff" && continue
   fail "exported symbols (>) differ from $list (<); if that is meant: BUILD=$BUILD sh tests/symbols.sh renew"
-  cat "$work/diff"
+  cat "$folder/diff"
 done
 # A declaration belongs to libethd.so or, of the drivers' headers, to libethd-drivers.so.
-declared >"$work/declared"
-cp "$work/exported-drivers" "$work/drivers"
-sort "$work/exported" "$work/exported-drivers" | comm -13 "$work/declared" - >"$work/unmarked"
-[ -s "$work/unmarked" ] && fail "exported without an ETHD_API declaration:" && cat "$work/unmarked"
-sort -u "$work/exported" "$work/drivers" | comm -23 "$work/declared" - >"$work/undefined"
-[ -s "$work/undefined" ] && fail "declared ETHD_API, defined nowhere:" && cat "$work/undefined"
+declared >"$folder/declared"
+cp "$folder/exported-drivers" "$folder/drivers"
+sort "$folder/exported" "$folder/exported-drivers" | comm -13 "$folder/declared" - >"$folder/unmarked"
+[ -s "$folder/unmarked" ] && fail "exported without an ETHD_API declaration:" && cat "$folder/unmarked"
+sort -u "$folder/exported" "$folder/drivers" | comm -23 "$folder/declared" - >"$folder/undefined"
+[ -s "$folder/undefined" ] && fail "declared ETHD_API, defined nowhere:" && cat "$folder/undefined"
 
 exact='fabs|floor|ceil|round|trunc|rint|nearbyint|lround|llround|lrint|llrint|fmin|fmax|copysign|fmod|remainder|nextafter|ldexp|frexp|scalbn|modf'
 control="mem(cpy|move|set|cmp|chr)|sqrt|$exact"
@@ -78,23 +75,23 @@ compiler='_GLOBAL_OFFSET_TABLE_|__cxa_finalize|__gmon_start__|_ITM_(de)?register
 library="$control|str[a-z]+|malloc|calloc|free|aligned_alloc|dl(open|sym|close|error)|__isoc23_str[a-z]+"
 
 needs() { nm -u "$@" | awk 'NF >= 2 { sub(/@.*/, "", $2); print $2 }' | sort -u; }
-needs "$so" | grep -vxE "$library|$compiler" >"$work/so" && fail "libethd.so needs what it may not:" && cat "$work/so"
+needs "$so" | grep -vxE "$library|$compiler" >"$folder/so" && fail "libethd.so needs what it may not:" && cat "$folder/so"
 for object in $RT_OBJECTS; do
-  needs "$object" | grep -vxE "$control|ethd_[a-z0-9_]+|$compiler" >"$work/object" &&
-    fail "$object, of the control side, needs what it may not:" && cat "$work/object"
+  needs "$object" | grep -vxE "$control|ethd_[a-z0-9_]+|$compiler" >"$folder/object" &&
+    fail "$object, of the control side, needs what it may not:" && cat "$folder/object"
 done
 # The loop's thread sleeps and reads the clock, by Xenomai's names where it is built for that.
 clock='(__cobalt_)?clock_(nanosleep|gettime)'
 for object in $LOOP_OBJECTS; do
-  needs "$object" | grep -vxE "$control|$clock|ethd_[a-z0-9_]+|$compiler" >"$work/object" &&
-    fail "$object, of the loop's thread, needs what it may not:" && cat "$work/object"
+  needs "$object" | grep -vxE "$control|$clock|ethd_[a-z0-9_]+|$compiler" >"$folder/object" &&
+    fail "$object, of the loop's thread, needs what it may not:" && cat "$folder/object"
 done
 # The C library's text depends on the process's locale: drivers/runtime/text/locale.c alone asks for it. lib's parser gives strtod digits
 # without a point; ini.c sets a locale while inih reads.
 local='(__)?(isoc[0-9]+_)?v?([fd]|sn?|as)?w?(printf|scanf)(_chk)?|(__isoc[0-9]+_)?(strto(d|f|ld)|wcsto[a-z]+)|atof|strf(rom.*|mon|ptime)|__ctype_.*|is(alnum|alpha|blank|cntrl|digit|graph|lower|print|punct|space|upper|xdigit)|to(upper|lower)|strn?casecmp|strcasestr|(str|wcs)(coll|xfrm)|alphasort|glob|fnmatch|regcomp|x?p?str?error(_r)?|perror|mb[a-z]+|wc[a-z]+|isw[a-z]+|(set|use|new|dup)locale|localeconv|nl_langinfo'
 nm -A -u "$BUILD/libethd.a" "$BUILD/libethd-drivers.a" "$BUILD/libethd-apps.a" "$BUILD"/obj/apps/ethd-*.o |
   awk '{ sub(/@.*/, "", $NF); sub(/:[^:]*$/, "", $1); print $1, $NF }' | grep -E " ($local)\$" |
-  grep -vE ':locale.o |libethd.a:parse.o strtod$|:ini.o uselocale$' >"$work/local" &&
-  fail "text that depends on the process's locale (see drivers/runtime/text/locale.h):" && cat "$work/local"
-echo "$(wc -l <"$work/exported") exported, $(echo $RT_OBJECTS $LOOP_OBJECTS | wc -w) objects of the control side"
+  grep -vE ':locale.o |libethd.a:parse.o strtod$|:ini.o uselocale$' >"$folder/local" &&
+  fail "text that depends on the process's locale (see drivers/runtime/text/locale.h):" && cat "$folder/local"
+echo "$(wc -l <"$folder/exported") exported, $(echo $RT_OBJECTS $LOOP_OBJECTS | wc -w) objects of the control side"
 exit $failed

@@ -1,8 +1,7 @@
 #!/bin/sh
 # ethd-tap as its users see it.
 set -eu
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 tap=$BUILD/bin/ethd-tap
 fail() { echo "$*"; exit 1; }
 

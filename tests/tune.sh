@@ -1,12 +1,9 @@
 #!/bin/sh
 # ethd-tune: what it chooses is better than what it began from by another program's figures, keeps its margins by another
 # program's bounds, and is the same in a second run. Bad input. ETHD_WHOLE=1: also for an identified plant, as make ci does.
-set -u
+. tests/begin.sh
 bin=$BUILD/bin
 tests=$(cd "$(dirname "$0")" && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-failed=0
 fail() { echo "FAILED: $*"; failed=1; }
 tune() { "$bin/ethd-tune" --plant n --points 16 --taps 40 "$@"; }
 cd "$folder" || exit 1

@@ -1,11 +1,8 @@
 #!/bin/sh
 # No operand writes what another one of the same expression uses: the order is the compiler's. Looks at lib;
 # ETHD_UNSEQUENCED=all: at drivers, apps and tests as well, as make ci does. First at a file of which every answer is known.
-set -u
+. tests/begin.sh
 python3=${PYTHON:-python3}
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-failed=0
 cat >"$folder/known.c" <<'END'
 typedef struct pair { int a, b; } pair;
 extern int take(int *x), look(const int *x), two(int, int), use(pair *p);

@@ -1,8 +1,6 @@
 #!/bin/sh
 # A thousandth of make stress's volume: 1e6 inputs over all readers, in two goes, and 86 s of a simulated day.
-set -u
-folder=$(mktemp -d) || exit 1
-trap 'rm -rf "$folder"' EXIT
+. tests/begin.sh
 fail() { echo "FAILED $*"; exit 1; }
 
 export VOLUME_STATE="$folder/volume"

@@ -2,7 +2,7 @@
 # numpy. Sourced first; drive.sh, plant.sh and board.sh put a device there.
 case ${SAN:-} in *thread*) echo "SKIP: a thread sanitizer's threads don't fit into the loop's stack"; exit 77 ;; esac
 python3=$(sh .ci/setup python) || { echo "SKIP: no python3 with numpy, which looks at what the device did"; exit 77; }
-folder=$(mktemp -d)
+. tests/begin.sh
 children=
 finish() {
   for child in $children; do kill "$child" 2>/dev/null; done
@@ -10,13 +10,6 @@ finish() {
 }
 trap finish EXIT
 trap 'exit 1' HUP INT PIPE TERM
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
-says() { # FILE PATTERN...
-  file=$1
-  shift
-  for pattern; do grep -q -e "$pattern" "$file" || { fail "no $pattern in:"; cat "$file"; }; done
-}
 await() { # FILE PATTERN
   for _ in $(seq 1200); do
     grep -q -e "$2" "$1" 2>/dev/null && return
