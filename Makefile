@@ -348,8 +348,8 @@ bench bench-quick: $(B)/tests/bench $(PEERS) $(SHARE)
 # The long ones: hours, of which one test may take any part.
 STRESS := $(patsubst %.c,$(B)/tests/%,$(notdir $(call files,tests/stress/test_*.c)))
 stress: export CK_DEFAULT_TIMEOUT := 360000
-stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_fuzz_decoder \
-  $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_store $(B)/tests/test_servo_driver \
+stress: all $(B)/tests/test_scene_tree $(B)/tests/test_fuzz_decoder \
+  $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_store $(B)/tests/test_servo_driver \
   $(B)/tests/test_fuzz_map $(B)/tests/test_promises $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
   $(B)/tests/volume $(B)/tests/day $(STRESS)
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
@@ -359,11 +359,9 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
 	for k in 1 2 3 4 5; do ETHD_STRESS=1 $(B)/tests/test_servo_guardian || exit 1; done
 	ETHD_SERVO_CYCLES=50000 $(B)/tests/test_servo_link
 	ETHD_FUZZ_RUNS=10000000 $(B)/tests/test_fuzz_map
-	ETHD_FUZZ=10000000 $(B)/tests/test_scene_parse
 	ETHD_FUZZ=100000000 $(B)/tests/test_fuzz_decoder
 	ETHD_RING_FRAMES=20000000 $(B)/tests/test_ring_noise
 	ETHD_REPLUGS=100 $(B)/tests/test_ring_driver
-	ETHD_FUZZ=1000000 $(B)/tests/test_study
 	ETHD_FUZZ=50000 $(B)/tests/test_store
 	@BUILD='$(abspath $(B))' CC='$(CC)' SAN='$(SAN)' ETHD_STUDY_KILLS=50 sh tests/study.sh
 	@BUILD='$(abspath $(B))' PYTHON='$(PYTHON)' SAN='$(SAN)' ETHD_STUDY_WHOLE=1 sh tests/study_whole.sh

@@ -4,14 +4,17 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "ethd/config.h"
 #include "ethd/scene.h"
 #include "inject/script.h"
+#include "proximity_ring/calibration.h"
 #include "proximity_ring/decoder.h"
 #include "record/npy_parts.h"
 #include "servo/map.h"
 #include "study/protocol.h"
 #include "text/csv.h"
 #include "text/ini.h"
+#include "unit/config_text.h"
 
 static int judged(ethd_status status, const char *message) {
   if (status == ETHD_OK) return 1;
@@ -24,9 +27,19 @@ static int read_scene(const char *text, size_t length) {
   ethd_scene *scene;
   ethd_error error;
   ethd_status status = ethd_scene_parse(text, length, &scene, &error);
+  if (status != ETHD_OK)
+    return !scene && status < 0 && error.status == status && error.line >= 1 && error.name[0] &&
+                   !strpbrk(error.name, "\n\r\033")
+               ? 0
+               : -1;
+  const ethd_vec x = {0.3, 0.7};
+  ethd_touch touch;
+  ethd_nearest q;
+  ethd_scene_query(scene, x, &q);
+  size_t found = ethd_scene_touches(scene, x, 1, &touch, 1);
   ethd_scene_destroy(scene);
-  if (status == ETHD_OK) return 1;
-  return !scene && error.status == status && error.name[0] && !strpbrk(error.name, "\n\r\033") ? 0 : -1;
+  if (q.object >= 0 && !(isfinite(q.distance) && fabs(ethd_vec_norm(q.n) - 1) < 1e-12)) return -1;
+  return found && touch.distance != q.distance ? -1 : 1;
 }
 
 static void grow_scene(FILE *out, int rows) {
@@ -51,14 +64,33 @@ static void grow_ini(FILE *out, int rows) { /* comments, for keys are at most 51
 static int read_csv(const char *text, size_t length) {
   char message[ETHD_MESSAGE_MAX] = "";
   ethd_csv csv;
-  ethd_status status = ethd_csv_parse(text, length, "x", NULL, &csv, message);
+  static const char *const wanted[] = {"t_s", "x_m", NULL};
+  bool finite = true;
+  ethd_status status = ethd_csv_parse(text, length, "x", length % 2 ? wanted : NULL, &csv, message);
+  for (size_t k = 0; !status && k < csv.rows * csv.columns; k++) finite &= !isinf(csv.values[k]);
   if (status == ETHD_OK) ethd_csv_free(&csv);
-  return judged(status, message);
+  return finite ? judged(status, message) : -1;
 }
 
 static void grow_csv(FILE *out, int rows) {
   fputs("t_s,x_m,y_m\n", out);
   for (int i = 0; i < rows; i++) fprintf(out, "%d.001,0.%d,-1e-%d\n", i, i, i % 99);
+}
+
+static int read_config(const char *text, size_t length) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd_config *config;
+  ethd_status status = ethd_config_parse(text, length, "x", "/nowhere", &config, message);
+  if (status != ETHD_OK) return config ? -1 : judged(status, message);
+  bool is_good = ethd_setup_check(&config->setup, NULL) == ETHD_OK;
+  ethd_config_free(config);
+  return is_good ? 1 : -1;
+}
+
+static int read_calibration(const char *text, size_t length) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd__calibration calibration;
+  return judged(ethd__calibration_parse(text, length, "x", &calibration, message), message);
 }
 
 /* ---- recordings ---- */
@@ -106,9 +138,14 @@ static int read_map(const char *text, size_t length) {
 static int read_script(const char *text, size_t length) {
   char message[ETHD_MESSAGE_MAX] = "";
   ethd__script script;
+  bool is_good = true;
   ethd_status status = ethd__script_parse(text, length, "x", 0.001, &script, message);
+  for (uint32_t k = 0; k < script.count; k++) {
+    const ethd__injection *in = &script.at[k];
+    is_good &= in->until_ns > in->from_ns && in->from_ns >= 0 && in->first + in->count <= ETHD_FAULT_COUNT;
+  }
   ethd__script_free(&script);
-  return judged(status, message);
+  return is_good ? judged(status, message) : -1;
 }
 
 static void grow_script(FILE *out, int rows) {
@@ -121,13 +158,15 @@ static int read_protocol(const char *text, size_t length) {
   char message[ETHD_MESSAGE_MAX] = "";
   ethd__protocol protocol;
   ethd_status status = ethd__protocol_parse(text, length, "x", ".", &protocol, message);
-  if (status == ETHD_OK) ethd__protocol_free(&protocol);
-  return judged(status, message);
+  if (status != ETHD_OK) return judged(status, message);
+  bool is_good = ethd__protocol_points(&protocol) >= 1 && protocol.attempts >= protocol.taps;
+  ethd__protocol_free(&protocol);
+  return is_good ? 1 : -1;
 }
 
 /* ---- the table ---- */
 
-static const char *const table_words[] = {",", "\n",   "\"",    "\"\"",  "nan",          "1e999",
+static const char *const table_words[] = {",", "\n",   "\"",    "\"\"",  "nan",          "inf", "1e999",
                                           "-", "\r\n", "0x1p9", "1.2.3", "\xef\xbb\xbf", NULL};
 static const char *const ini_words[] = {"[",     "]",         "=",  "\n",   ";",       "#",
                                         "[a]\n", "key = 1\n", "\t", "\x01", "plugins", NULL};
@@ -145,6 +184,27 @@ static const char *const scene_words[] = {"circle ",
                                           "#",
                                           "segment 0 0 1 1\n",
                                           NULL};
+static const char *const config_words[] = {"inf",
+                                           "nan",
+                                           "-",
+                                           "1e9",
+                                           "law = spring\n",
+                                           ";",
+                                           "]",
+                                           "[",
+                                           "\t",
+                                           "0x",
+                                           " ",
+                                           "\r\n",
+                                           X50 X50 X50 X50,
+                                           "preset = paper\n",
+                                           "[plugins]\nfile = /nowhere\n",
+                                           "method = kalman\n",
+                                           "driver = ",
+                                           "[device]\nq = 1\n",
+                                           NULL};
+static const char *const calibration_words[] = {"[sensor 3]\n", "[law]\n", "point0 = 1 1\n", "a = 1\n",
+                                                "nan",          "-",       "level = gain\n", NULL};
 static const char *const map_words[] = {
     "\n[register torque1]\n", "\n", "=", "0x", "step1=", "1e999", "-0.0", "type=f32\n", "[", NULL};
 static const char *const script_words[] = {"q1", "offset", " by=", " for=",  "inf",   "t",
@@ -155,6 +215,7 @@ static const char *const npy_words[] = {"'descr'",    "'<f8'", "(",    ")", ", "
                                         "'shape': (", "\n",    "True", NULL};
 static const char *const frame_words[] = {"\x01", "\x05zzzz", "\xff", "\x1f", NULL};
 
+#define SENSOR(n) "[sensor " #n "]\ndark = 2e3\nserial = 1\npoint0 = 6e4 1e-3\npoint1 = 3e4 2e-3\n"
 #define TEXT(text) (text), sizeof(text) - 1
 
 const text_reader text_readers[] = {
@@ -166,6 +227,12 @@ const text_reader text_readers[] = {
      TEXT("[a]\nkey = 1\nword = some words ; and why\n[b]\nlist = 1, 2, 3\n# more\n[plugins]\nfile = a\nfile = b\n"),
      ini_words, read_ini, grow_ini, 2000},
     {"csv", TEXT("t_s,x_m,y_m\n0,1.5,-2e-3\n0.001,,nan\n0.002,7,8\n"), table_words, read_csv, grow_csv, 20000},
+    {"config", TEXT(everything), config_words, read_config, NULL, 0},
+    {"calibration",
+     TEXT("[calibration]\nlevel = table\ndate = x\nresidual = 1e-4\n" SENSOR(0) SENSOR(1) SENSOR(2) SENSOR(3) SENSOR(4)
+              SENSOR(5) SENSOR(6) SENSOR(7) SENSOR(8) SENSOR(9) SENSOR(10) SENSOR(11) SENSOR(12) SENSOR(13) SENSOR(14)
+                  SENSOR(15)),
+     calibration_words, read_calibration, NULL, 0},
     {"npy",
      TEXT("\x93NUMPY\x01\x00\x76\x00{'descr': [('n', '<i8'), ('x', '<f8', (16,))], 'fortran_order': False, "
           "'shape': (0,), }                              \n"),

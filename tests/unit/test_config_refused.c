@@ -4,7 +4,6 @@
 
 #include "config_text.h"
 #include "ethd/config.h"
-#include "mutate.h"
 #include "unit/suite.h"
 
 static char message[ETHD_MESSAGE_MAX];
@@ -109,50 +108,4 @@ TEST(test_too_many_keys) {
   ethd_config *c;
   ck_assert_int_lt(ethd_config_parse(text, (size_t)(p - text), "x.ini", NULL, &c, message), 0);
   ck_assert_str_eq(message, "x.ini:514: over 512 keys");
-}
-
-/* ---- whatever comes ---- */
-
-TEST(test_mutations) {
-  static const char *const words[] = {"[contact]\n",
-                                      "\n",
-                                      "=",
-                                      "inf",
-                                      "nan",
-                                      "-",
-                                      "1e9",
-                                      "law = spring\n",
-                                      ";",
-                                      "]",
-                                      "preset = paper\n",
-                                      "[plugins]\nfile = /nowhere\n",
-                                      "\t",
-                                      "0x",
-                                      " ",
-                                      "[",
-                                      "\r\n",
-                                      X50 X50 X50 X50,
-                                      "method = kalman\n",
-                                      "driver = ",
-                                      "[device]\nq = 1\n",
-                                      NULL};
-  char text[4096];
-  int accepted = 0;
-  for (uint64_t i = 0; i < 80000; i++) {
-    size_t n = mutate(everything, sizeof everything - 1, words, i, text, sizeof text);
-    ethd_config *c = NULL;
-    memset(message, 'x', sizeof message);
-    ethd_status status = ethd_config_parse(text, n, "x.ini", "/nowhere", &c, message);
-    accepted += status == ETHD_OK;
-    if (status == ETHD_OK) {
-      ethd_error error;
-      ck_assert_int_eq(ethd_setup_check(&c->setup, &error), ETHD_OK);
-      ethd_config_free(c);
-      continue;
-    }
-    ck_assert_ptr_null(c);
-    ck_assert_ptr_nonnull(memchr(message, 0, sizeof message));
-    ck_assert_msg(strncmp(message, "x.ini:", 6) == 0 && !strpbrk(message, "\n\r"), "%s", message);
-  }
-  ck_assert_int_gt(accepted, 100);
 }

@@ -9,7 +9,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "mutate.h"
 #include "text/csv.h"
 #include "text/text.h"
 #include "unit/suite.h"
@@ -231,31 +230,6 @@ TEST(test_keeps_mode_and_link) {
   ck_assert(lstat(link, &info) == 0 && S_ISLNK(info.st_mode));
   ck_assert(stat(path, &info) == 0 && (info.st_mode & 0777) == 0640);
   unlink(link);
-}
-
-/* ---- whatever comes ---- */
-
-TEST(test_mutations) {
-  static const char *const words[] = {",", "\n", "\"", "nan", "inf", "-", "1e5", "\r\n", "a", "\n\n", ",,", " ", NULL};
-  static const char seed[] = "t_s,q1_rad,q2_rad,note\n0,0.5,1e-3,\"a,b\"\n0.001,,nan,c\r\n0.002,-1.25,+4,\n";
-  static const char *const wanted[] = {"t_s", "q1_rad", NULL};
-  char text[1024];
-  int accepted = 0;
-  for (uint64_t i = 0; i < 100000; i++) {
-    size_t n = mutate(seed, sizeof seed - 1, words, i, text, sizeof text);
-    ethd_csv c;
-    memset(message, 'x', sizeof message);
-    ethd_status status = ethd_csv_parse(text, n, "x.csv", i & 1 ? wanted : NULL, &c, message);
-    accepted += status == ETHD_OK;
-    if (status == ETHD_OK) {
-      for (size_t k = 0; k < c.rows * c.columns; k++) ck_assert(!isinf(c.values[k]));
-      ethd_csv_free(&c);
-      continue;
-    }
-    ck_assert_ptr_nonnull(memchr(message, 0, sizeof message));
-    ck_assert_msg(strncmp(message, "x.csv:", 6) == 0 && !strpbrk(message, "\n\r"), "%s", message);
-  }
-  ck_assert_int_gt(accepted, 1000);
 }
 
 TEST(test_number) {

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "inject/inject.h"
-#include "mutate.h"
 #include "rig.h"
 #include "unit/device_of.h"
 #include "unit/suite.h"
@@ -356,26 +355,4 @@ TEST(test_no_file) {
   ck_assert_int_eq(ethd_device_open("plain", only, &def, &device, message), ETHD_E_FILE);
   ck_assert_msg(strstr(message, "/nowhere/missing.inject"), "%s", message);
   ck_assert_ptr_null(device);
-}
-
-TEST(test_mutations) {
-  static const char seed[] = "# a script\n0.5 q1 freeze for=0.1\n612t rays nan for=inf\n0.7 reading delay by=0.02\n"
-                             "0.9 fault9 set\n1 write scale by=-1e0 for=1\n";
-  static const char *const words[] = {"ray16", "fault38", " for=", " by=", "inf", "nan",
-                                      "t",     "\n",      "#",     "\t",   "1e9", NULL};
-  char text[512], message[ETHD_MESSAGE_MAX];
-  int good = 0;
-  for (uint64_t i = 0; i < 20000; i++) {
-    ethd__script script;
-    size_t n = mutate(seed, sizeof seed - 1, words, i, text, sizeof text);
-    ethd_status status = ethd__script_parse(text, n, "s", 0.001, &script, message);
-    ck_assert_msg(status <= 0 && (status == 0 || !strchr(message, '\n')), "%s", message);
-    good += !status;
-    for (uint32_t k = 0; k < script.count; k++) {
-      const ethd__injection *in = &script.at[k];
-      ck_assert(in->until_ns > in->from_ns && in->from_ns >= 0 && in->first + in->count <= ETHD_FAULT_COUNT);
-    }
-    ethd__script_free(&script);
-  }
-  ck_assert(good > 1000 && good < 19000);
 }

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "ethd/record.h"
-#include "mutate.h"
 #include "record/npy_parts.h"
 #include "unit/suite.h"
 
@@ -171,27 +170,6 @@ TEST(test_trace_columns) {
   ck_assert_str_eq(ethd_trace_columns[0].name, "time_ns");
   ck_assert_str_eq(ethd_trace_columns[count - 1].name, "learnt");
   ck_assert_uint_eq(ethd_trace_columns[count - 1].offset, offsetof(ethd_trace, learnt));
-}
-
-TEST(test_mutations) {
-  static const char *const words[] = {"9", "0", ",", "(", "'", "\n", " ", "\x93NUMPY", "}", NULL};
-  static char file[4096], text[8192];
-  ethd_npy *npy;
-  int accepted = 0;
-  ck_assert_int_eq(ethd_npy_create(path, columns, sizeof(row), &npy, message), ETHD_OK);
-  write_rows(npy, 0, 2);
-  ck_assert_int_eq(ethd_npy_close(npy), ETHD_OK);
-  size_t length = read_file(file, sizeof file);
-  for (uint64_t i = 0; i < 100000; i++) {
-    size_t data, count, n = mutate(file, length, words, i, text, sizeof text);
-    ethd_status status = ethd__npy_parse(text, n, "x.npy", columns, sizeof(row), &data, &count, message);
-    accepted += status == ETHD_OK;
-    if (status == ETHD_OK)
-      ck_assert(data + count * sizeof(row) <= n);
-    else
-      ck_assert_msg(strncmp(message, "x.npy: ", 7) == 0 && !strpbrk(message, "\n\r"), "%s", message);
-  }
-  ck_assert_int_gt(accepted, 100);
 }
 
 FIXTURE(set_up, tear_down)

@@ -4,7 +4,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "mutate.h"
 #include "text/text.h"
 #include "unit/rig.h"
 #include "unit/ring_rod.h"
@@ -169,22 +168,5 @@ TEST(test_bad_texts) {
     ck_assert_msg(ethd__calibration_parse(bads[i].text, strlen(bads[i].text), "x", &c, message) < 0, "%s",
                   bads[i].text);
     ck_assert_msg(!strncmp(message, bads[i].says, strlen(bads[i].says)), "%s\nsays %s", bads[i].text, message);
-  }
-}
-
-TEST(test_mutations) {
-  static const char *const words[] = {"[sensor 3]\n", "[law]\n", "point0 = 1 1\n", "a = 1\n",
-                                      "nan",          "-",       "level = gain\n", NULL};
-  static const char seed[] =
-      "[calibration]\nlevel = table\ndate = x\nresidual = 1e-4\n[sensor 0]\ndark = 2e3\nserial = 1\n"
-      "point0 = 60000 1e-3\npoint1 = 30000 2e-3\n[sensor 1]\npoint0 = 5e4 1e-3\n";
-  char text[1024];
-  const char *wanted = getenv("ETHD_FUZZ");
-  uint64_t runs = wanted ? strtoull(wanted, NULL, 10) : 20000;
-  for (uint64_t i = 0; i < runs; i++) {
-    ethd__calibration c;
-    size_t n = mutate(seed, sizeof seed - 1, words, i, text, sizeof text);
-    message[0] = 0;
-    if (ethd__calibration_parse(text, n, "x", &c, message) < 0) ck_assert(message[0] && !strchr(message, '\n'));
   }
 }

@@ -1,5 +1,4 @@
-/* Scenes from text: what is taken, each refusal with its line and word, and text broken at random. ETHD_FUZZ:
-   so many of those. */
+/* Scenes from text: what is taken, and each refusal with its line and word. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -7,7 +6,7 @@
 #include <string.h>
 
 #include "ethd/scene.h"
-#include "unit/mutate.h"
+#include "unit/draw.h"
 #include "unit/suite.h"
 
 static ethd_scene *parse(const char *text) {
@@ -326,45 +325,4 @@ TEST(test_limits) {
     ethd_scene_destroy(s);
     word[length] = '0';
   }
-}
-
-/* Texts broken by a few changes each: no crash, no scene on failure, a line on every failure, and what is
-   taken can be asked. */
-TEST(test_broken_texts) {
-  const char *wanted = getenv("ETHD_FUZZ");
-  uint64_t cases = wanted ? strtoull(wanted, NULL, 10) : 200000, taken = 0, refused = 0;
-  static const char whole[] =
-      "halfplane -1 0 -0.238 material=soft\ncircle 1 2 3 # c\nmaterial soft k_e=2500 b_e=45\n"
-      "capsule 0 0 1 1 0.5\nbox 1 2 3e0 4 -0.5\npolygon 0 0 4 0 4 4 2 2 0 4\nsegment 0 0 1 1 material=hard\n"
-      "polyline 0 0 1 1 1 0 0 1\nmaterial hard k_e=1e4\n";
-  static const char *const words[] = {" ",         "\n", "#",   "=",   "-",        ".",       "e",
-                                      "0",         "9",  "1e9", "nan", "material", "circle ", "polygon ",
-                                      "material=", "\r", "\t",  "0 0", "1e-320",   "e308",    NULL};
-  for (uint64_t i = 0; i < cases; i++) {
-    char text[2 * sizeof whole];
-    size_t n = mutate(whole, sizeof whole - 1, words, i, text, sizeof text);
-    char *exact = malloc(n ? n : 1);
-    memcpy(exact, text, n);
-    ethd_scene *s;
-    ethd_error error = {.status = ETHD_OK};
-    ethd_status status = ethd_scene_parse(exact, n, &s, &error);
-    free(exact);
-    if (status) {
-      refused++;
-      ck_assert(status < 0 && s == NULL && error.status == status && error.line >= 1 && error.line < 64);
-      ck_assert(memchr(error.name, 0, sizeof error.name) && error.name[0]);
-      continue;
-    }
-    taken++;
-    ethd_touch touch[4];
-    ethd_nearest q;
-    ethd_vec x = {0.3, 0.7};
-    ethd_scene_query(s, x, &q);
-    size_t found = ethd_scene_touches(s, x, 1, touch, 4);
-    if (q.object >= 0) ck_assert(isfinite(q.distance) && fabs(ethd_vec_norm(q.n) - 1) < 1e-12);
-    if (found) ck_assert(touch[0].distance == q.distance);
-    ethd_scene_destroy(s);
-  }
-  ck_assert_uint_gt(taken, cases / 20);
-  ck_assert_uint_gt(refused, cases / 3);
 }

@@ -7,7 +7,6 @@
 #include "study/order.h"
 #include "study/people.h"
 #include "text/sha256.h"
-#include "unit/mutate.h"
 #include "unit/suite.h"
 
 static ethd__protocol protocol;
@@ -66,29 +65,6 @@ TEST(test_a_grid_has_an_end) {
   for (int i = 0; i < 6; i++) sprintf(text + strlen(text), "a.k%d = 1,2,3,4,5,6,7,8\n", i);
   ck_assert_int_eq(parse(text), ETHD_E_RANGE); /* 8^6 */
   ck_assert_ptr_nonnull(strstr(message, "x.study:7: grid.a.k5"));
-}
-
-/* Whatever is refused says one line with the file, and leaves nothing behind for a sanitizer to find. */
-TEST(test_mutations) {
-  static const char *const words[] = {"[grid]", "[hand]\n", "taps = ", "1e999", "nan", ",",
-                                      "=",      "\n",       "latin",   "\0x",   "-",   NULL};
-  static char text[8192];
-  const char *more = getenv("ETHD_FUZZ");
-  uint64_t count = more ? strtoull(more, NULL, 10) : 20000, taken = 0;
-  for (uint64_t i = 0; i < count; i++) {
-    size_t n = mutate(everything, sizeof everything - 1, words, i, text, sizeof text);
-    *message = 0;
-    if (!ethd__protocol_parse(text, n, "x.study", ".", &protocol, message)) {
-      ck_assert_uint_ge(ethd__protocol_points(&protocol), 1);
-      ck_assert_uint_ge(protocol.attempts, protocol.taps);
-      ethd__protocol_free(&protocol);
-      taken++;
-    } else {
-      ck_assert_msg(!strncmp(message, "x.study:", 8) && !strpbrk(message, "\n\r"), "%s", message);
-    }
-  }
-  ck_assert_uint_gt(taken, 100);
-  ck_assert_uint_lt(taken, count);
 }
 
 /* ---- order ---- */
