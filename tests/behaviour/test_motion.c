@@ -1,6 +1,5 @@
 /* Every recorded movement against every law, closed loop: properties of the traces. The folder is
    ETHD_MOTION_DIR, tests/motion without. */
-#include <check.h>
 #include <glob.h>
 #include <math.h>
 #include <stdio.h>
@@ -10,11 +9,10 @@
 #include "cli/cli.h"
 #include "properties.h"
 #include "tap/study.h"
+#include "unit/suite.h"
 
 static const char *const laws[] = {"abrupt", "smooth", "offset"};
 static const char *const words[] = {"low", "high"};
-static glob_t files;
-static size_t stride = 1; /* of files: sanitizers are slow */
 
 /* ---- the file, read anew ---- */
 
@@ -152,7 +150,13 @@ static void run_file(ethd__study *study, const ethd_plant *plant, const char *pa
   free(r.at);
 }
 
-START_TEST(test_every_movement_and_law) {
+TEST(test_every_movement_and_law) {
+  const char *folder = getenv("ETHD_MOTION_DIR"), *sanitizer = getenv("SAN");
+  const size_t stride = sanitizer && *sanitizer ? 12 : 1; /* of files: sanitizers are slow */
+  glob_t files;
+  char pattern[4096];
+  snprintf(pattern, sizeof pattern, "%s/*/*.csv", folder && *folder ? folder : "tests/motion");
+  ck_assert_msg(glob(pattern, 0, NULL, &files) == 0, "no recorded movements: %s", pattern);
   char message[ETHD_MESSAGE_MAX], *plant = ethd__data_path("n.plant"), *ini = ethd__data_path("n.ini");
   ethd_config *config;
   ethd__study study = {.seed = 7, .speed_count = 2};
@@ -170,31 +174,8 @@ START_TEST(test_every_movement_and_law) {
   for (int i = 0; i < ETHD_TAP_REASON_COUNT; i++) printf(" %s %zu", ethd__reason_words[i], reasons[i]);
   printf("\n");
   fflush(stdout);
+  globfree(&files);
   ethd_config_free(config);
   free(plant);
   free(ini);
-}
-END_TEST
-
-int main(void) {
-  char pattern[4096];
-  const char *folder = getenv("ETHD_MOTION_DIR"), *sanitizer = getenv("SAN");
-  if (sanitizer && *sanitizer) stride = 12;
-  if (!folder || !*folder) folder = "tests/motion";
-  snprintf(pattern, sizeof pattern, "%s/*/*.csv", folder);
-  if (glob(pattern, 0, NULL, &files) != 0) {
-    printf("no recorded movements: %s\n", pattern);
-    return EXIT_FAILURE;
-  }
-  Suite *suite = suite_create("motion");
-  TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 200);
-  tcase_add_test(all, test_every_movement_and_law);
-  suite_add_tcase(suite, all);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  globfree(&files);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }
