@@ -228,6 +228,56 @@ last=$(tail -n 1 "$folder/trials/taps.csv" | awk -F, '{ printf "%s-%02d-%03d", $
 "$study" --resume "$folder/trials" --reject "$last" --reason looked >"$folder/out" 2>&1 || fail "rejecting a trial: $(cat "$folder/out")"
 "$study" --resume "$folder/trials" --quiet >"$folder/out" 2>&1 && grep -q ': 1 tap' "$folder/out" || grep -q ': [0-9]* taps;' "$folder/out" || fail "a rejected trial: $(cat "$folder/out")"
 
+# ---- conditions in a table: kept and hashed, in any order, at two stations and in shards; what can't be names file and row ----
+printf 'speed,transition\r\nlow,offset\r\nlow,"smooth"\r\n0.3,offset\r\n' >"$folder/mine.csv"
+conditions() { printf '[study]\nparticipants = 6\nconditions = mine.csv\norder = %s\ntraining = 1\ntaps = 2\nattempts = 40\n' "$1" >"$folder/table.study"; }
+for order in paper random latin interleaved; do
+  conditions $order
+  "$study" "$folder/table.study" --plan >"$folder/plan" || fail "the plan of $order conditions"
+  [ $order != interleaved ] && [ $order != latin ] || grep -q '^    6 .*  balanced$' "$folder/plan" || fail "$order conditions: $(cat "$folder/plan")"
+  "$study" "$folder/table.study" --quiet --out "$folder/by-$order" >"$folder/out" 2>&1 || fail "$order conditions: $(cat "$folder/out")"
+  grep -qx "Hash of study.*: $(cd "$folder/by-$order" && cat study.ini config.ini scene.scene device.plant conditions.csv | sha256sum | cut -d' ' -f1)" "$folder/plan" || fail "the hash of $order conditions"
+  "$python3" - "$folder" $order <<'END' || fail "$order conditions aren't the table's"
+import collections, csv, sys
+folder, order = sys.argv[1:]
+wanted = [(r["transition"], r["speed"]) for r in csv.DictReader(open(folder + "/mine.csv", newline=""))]
+taps = [t for t in csv.DictReader(open(f"{folder}/by-{order}/taps.csv")) if t["part"] == "test" and t["valid"] == "1"]
+assert collections.Counter((t["participant"], t["transition"], t["speed"]) for t in taps) == {(f"P0{p}", *c): 2 for p in range(1, 7) for c in wanted}
+END
+done
+for k in 1 4; do "$study" "$folder/table.study" --quiet --participant $k-$((k + 2)) --out "$folder/table$k" >/dev/null || fail "a table's station"; done
+"$study" --merge "$folder/table1" "$folder/table4" --out "$folder/table" >"$folder/out" 2>&1 || fail "merging a table's stations: $(cat "$folder/out")"
+[ "$(sort "$folder/table/taps.csv" | cut -d, -f1-27 | sha256sum)" = "$(sort "$folder/by-interleaved/taps.csv" | cut -d, -f1-27 | sha256sum)" ] || fail "a table's stations have other taps"
+for n in 1 2; do
+  for i in $(seq $n); do "$study" "$folder/table.study" --simulate 3 --shard $i/$n --out "$folder/bulk$n" >"$folder/out" 2>&1 || fail "a table's shard: $(cat "$folder/out")"; done
+  "$study" --merge "$folder/bulk$n" >/dev/null || fail "merging a table's shards"
+done
+cmp "$folder/bulk1/taps.csv" "$folder/bulk2/taps.csv" || fail "a table's shards"
+echo 0.3,smooth >>"$folder/by-random/conditions.csv"
+"$study" --resume "$folder/by-random" >"$folder/out" 2>"$folder/err" && fail "another table of conditions"
+grep -q 'begun with other files' "$folder/err" || fail "another table of conditions: $(cat "$folder/err")"
+table() { # PATTERN TEXT
+  printf "$2" >"$folder/mine.csv"
+  refuse 2 "$1" "$study" "$folder/table.study" --out "$folder/no"
+  [ "$(wc -l <"$folder/err")" = 1 ] && [ ! -e "$folder/no" ] || fail "$1: $(cat "$folder/err")"
+}
+table 'mine.csv: is empty' ''
+table 'mine.csv:2: columns transition and speed, and a row' 'transition,speed\n'
+table 'mine.csv:1: columns transition and speed' 'transition\noffset\n'
+table 'mine.csv:1: found the column "colour"; transition and speed are allowed' 'transition,colour,speed\noffset,red,low\n'
+table 'mine.csv:3: transition: .*"rough"' 'transition,speed\noffset,low\nrough,low\n'
+table 'mine.csv:3: speed: found "9"; low, high' 'transition,speed\noffset,low\noffset,9\n'
+table 'mine.csv:4: the condition of row 2 again' 'transition,speed\noffset,low\nsmooth,low\noffset,low\n'
+table 'mine.csv:2: speed: a cell of 0 bytes; 1 to 64' 'transition,speed\noffset,\n'
+table 'mine.csv:2: 1 cell, the header names 2 columns' 'transition,speed\noffset\n'
+table 'mine.csv:2: transition: a cell of 100000 bytes; 1 to 64 are allowed' "transition,speed\n$(head -c 100000 /dev/zero | tr '\0' x),low\n"
+table 'mine.csv: 1001 rows, at most 1000' "transition,speed\n$(seq -f 'offset,%g' 1001)\n"
+table 'mine.csv:10: over 8 strategies or speeds' "transition,speed\n$(seq -f 'offset,0.%g' 11 20)\n"
+rm "$folder/mine.csv"
+refuse 2 'mine.csv: No such file' "$study" "$folder/table.study" --out "$folder/no"
+printf '[study]\nconditions = mine.csv\nspeeds = low\n' >"$folder/both.study"
+refuse 2 'both.study:2: study.conditions: stands there beside study.strategies or study.speeds' "$study" "$folder/both.study" --plan
+
 # ---- orders: printed, kept, and counted here ----
 printf '[study]\nparticipants = 12\nstrategies = abrupt,smooth,offset\norder = latin\ntraining = 1\n' >"$folder/orders.study"
 "$study" "$folder/orders.study" --plan >"$folder/plan" || fail "--plan"

@@ -50,6 +50,7 @@ static void load_study(const ethd__study_options *o, ethd__protocol *out) {
   char message[ETHD_MESSAGE_MAX], *study = o->study ? strdup(o->study) : ethd__data_path("paper.study");
   if (!study) ethd__fail_memory();
   ethd_status status = ethd__protocol_load(study, out, message);
+  if (!status) status = ethd__folder_conditions(out, message);
   free(study);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
 }
@@ -248,7 +249,7 @@ int ethd__command_plan(const ethd__study_options *o) {
   const ethd__folder_parts parts = {&protocol, &loaded, o->finger, 0};
   check(ethd__folder_plan_hash(&parts, hash, message), message);
   ethd__plan_print(stdout, &protocol);
-  printf("Hash of study, configuration, scene, plant and movements: %s\n", hash);
+  printf("Hash of study, configuration, scene, plant, conditions and movements: %s\n", hash);
   ethd__loaded_free(&loaded);
   ethd__protocol_free(&protocol);
   return ETHD_EXIT_DONE;

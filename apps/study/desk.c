@@ -161,13 +161,23 @@ static ethd_status refuse(const ethd__protocol *p, int line, const char *key, co
   return ethd__say(message, ETHD_E_RANGE, "%s:%d: %s: %s", p->path, line, key, why);
 }
 
+/* Refuses a word of the study's strategies or speeds: where it stands. */
+static ethd_status refuse_word(const ethd__protocol *p, bool speed, size_t index, const char *what, char *message) {
+  const ethd__word_list *words = speed ? &p->speeds : &p->strategies;
+  size_t i = 0;
+  if (!p->conditions) return refuse(p, words->line, speed ? "study.speeds" : "study.strategies", what, message);
+  while ((speed ? p->condition[i].speed : p->condition[i].strategy) != index) i++;
+  return ethd__say(message, ETHD_E_RANGE, "%s:%zu: %s: %.300s", p->condition_path, p->condition[i].line,
+                   speed ? "speed" : "transition", what);
+}
+
 static ethd_status check_speeds(ethd__desk *desk, char *message) {
   const ethd__word_list *speeds = &desk->protocol->speeds;
   char what[ETHD_MESSAGE_MAX];
   for (size_t i = 0; i < speeds->count; i++) {
     snprintf(what, sizeof what, "found \"%s\"; low, high and numbers from 0.01 to 2 are allowed", speeds->word[i]);
     if (!parse_speed(desk, &desk->loaded->plant, speeds->word[i], &desk->speeds[i]))
-      return refuse(desk->protocol, speeds->line, "study.speeds", what, message);
+      return refuse_word(desk->protocol, true, i, what, message);
   }
   return ETHD_OK;
 }
@@ -178,7 +188,7 @@ static ethd_status check_strategies(ethd__desk *desk, char *message) {
   for (size_t i = 0; i < strategies->count; i++) {
     ethd_setup setup = desk->loaded->config->setup;
     if (ethd_config_transition(desk->loaded->config, strategies->word[i], &setup, why))
-      return refuse(desk->protocol, strategies->line, "study.strategies", why, message);
+      return refuse_word(desk->protocol, false, i, why, message);
   }
   return ETHD_OK;
 }

@@ -30,6 +30,7 @@ static const char files[] =
     "| file | holds |\n|---|---|\n"
     "| study.ini | the study file as it was read |\n"
     "| config.ini, scene.scene | the controller's configuration and walls |\n"
+    "| conditions.csv | the conditions, when the study has a table of them |\n"
     "| device.plant | the simulated device and finger: plausible, fitted, not measured |\n"
     "| movement.csv | the recorded movement, when all hands follow one |\n"
     "| movements/ | the recorded movements, when hands follow several |\n"

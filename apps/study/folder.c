@@ -12,7 +12,8 @@
 #include "text/file.h"
 #include "text/text.h"
 
-static const char *const hashed[] = {ETHD_STUDY_FILE, ETHD_RECORDING_CONFIG, ETHD_RECORDING_SCENE, ETHD_STUDY_PLANT};
+static const char *const hashed[] = {ETHD_STUDY_FILE, ETHD_RECORDING_CONFIG, ETHD_RECORDING_SCENE, ETHD_STUDY_PLANT,
+                                     ETHD_STUDY_CONDITIONS_FILE};
 
 char *ethd__folder_path(const char *folder, const char *name) {
   char *path = ethd__path_join(folder, name);
@@ -36,6 +37,13 @@ static char *find(const ethd__protocol *p, const char *name) {
   if (strchr(name, '/') || access(path, R_OK) == 0) return path;
   free(path);
   return ethd__data_path(name);
+}
+
+ethd_status ethd__folder_conditions(ethd__protocol *p, char message[ETHD_MESSAGE_MAX]) {
+  char *path = p->conditions ? ethd__folder_path(p->folder, p->conditions) : NULL;
+  ethd_status status = ethd__protocol_conditions(p, path, message);
+  free(path);
+  return status;
 }
 
 void ethd__folder_device(const ethd__protocol *p, ethd__loaded *out) {
@@ -82,8 +90,9 @@ ethd_status ethd__folder_hash(const char *folder, char out[ETHD_SHA256_TEXT], ch
   char *finger = finger_of(folder);
   ethd__sha256_begin(&sum);
   for (size_t i = 0; !status && i < sizeof hashed / sizeof *hashed; i++) {
-    char *path = ethd__folder_path(folder, hashed[i]);
-    status = add_file(&sum, path, message);
+    char *path = strcmp(hashed[i], ETHD_STUDY_CONDITIONS_FILE) ? ethd__folder_path(folder, hashed[i])
+                                                               : existing(folder, hashed[i]);
+    if (path) status = add_file(&sum, path, message);
     free(path);
   }
   if (!status && finger) status = add_movements(&sum, finger, message);
@@ -134,8 +143,11 @@ ethd_status ethd__folder_read(const char *folder, ethd__folder *out, char messag
   out->path[strlen(out->path) - 1] = 0;
   char *study = ethd__folder_path(folder, ETHD_STUDY_FILE);
   ethd_status status = ethd__protocol_load(study, &out->protocol, message);
+  char *conditions = ethd__folder_path(folder, ETHD_STUDY_CONDITIONS_FILE);
+  if (!status) status = ethd__protocol_conditions(&out->protocol, conditions, message);
   if (!status) status = ethd__folder_hash(folder, out->hash, message);
   free(study);
+  free(conditions);
   if (status == ETHD_E_FILE) status = no_study(folder, status, message);
   out->simulated = ethd__folder_simulated(folder);
   if (!status && out->simulated) out->protocol.participants = out->simulated;

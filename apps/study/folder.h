@@ -3,6 +3,7 @@
      study.ini      the study file, as it was read
      config.ini     the controller's configuration; scene.scene its walls; device.plant the simulated device
      movement.csv   the recorded movement, when all hands follow one; movements/ when they follow several
+     conditions.csv the table of conditions, when the study has one
      device.folder  with people in a device: where relative paths of its settings start
      versions.txt   program, compiler, and the hash: SHA-256 of all of these but device.folder, one after another
      README.md      the data dictionary, with JSON sidecars for programs; orders.csv, what is planned */
@@ -20,6 +21,7 @@
 #define ETHD_STUDY_PARTICIPANTS "participants.csv"
 #define ETHD_STUDY_RECORDINGS "taps"
 #define ETHD_STUDY_PLANT "device.plant"
+#define ETHD_STUDY_CONDITIONS_FILE "conditions.csv"
 #define ETHD_STUDY_VERSIONS "versions.txt"
 #define ETHD_STUDY_MOVEMENT "movement.csv"
 #define ETHD_STUDY_MOVEMENTS "movements"
@@ -28,6 +30,9 @@
 
 /* Loads the device that the protocol names. Exit 2 on a bad configuration or plant. */
 void ethd__folder_device(const ethd__protocol *protocol, ethd__loaded *out);
+
+/* Reads the conditions of a study that isn't in a folder yet. */
+ETHD_MUST_CHECK ethd_status ethd__folder_conditions(ethd__protocol *protocol, char message[ETHD_MESSAGE_MAX]);
 
 /* What a folder is made of. */
 typedef struct ethd__folder_parts {

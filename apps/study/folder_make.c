@@ -113,6 +113,8 @@ static ethd_status want_all(wanted_list *list) {
   want_text(list, ETHD_RECORDING_CONFIG, ethd__record_config_text(config), true);
   want_text(list, ETHD_RECORDING_SCENE, strdup(config->scene_text), true);
   ethd_status status = want_copy(list, ETHD_STUDY_PLANT, parts->loaded->plant_path);
+  if (!status && parts->protocol->conditions)
+    status = want_copy(list, ETHD_STUDY_CONDITIONS_FILE, parts->protocol->condition_path);
   if (!status) status = want_movements(list);
   if (status) return status;
   want_text(list, "README.md", ethd__dictionary(&scope), false);

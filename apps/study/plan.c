@@ -41,25 +41,39 @@ static void count_person(const ethd__protocol *p, uint32_t person, balance *b) {
   end_round(p, before, begun, b);
 }
 
-static bool is_even(const uint32_t *count, size_t n) {
-  for (size_t i = 1; i < n; i++)
-    if (count[i] != count[0]) return false;
-  return true;
+static bool is_there(const ethd__protocol *p, size_t speed, size_t strategy) {
+  for (size_t i = 0; i < p->condition_count; i++)
+    if (p->condition[i].speed == speed && p->condition[i].strategy == strategy) return true;
+  return false;
 }
 
-static bool are_neighbours_even(const ethd__protocol *p, const balance *b, size_t speed) {
-  size_t n = p->strategies.count;
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < n; j++)
-      if (i != j && b->behind[speed][i][j] != b->behind[speed][0][1]) return false;
-  return true;
+static bool is_even(const ethd__protocol *p, size_t speed, const uint32_t *count) {
+  uint32_t least = UINT32_MAX, most = 0;
+  for (size_t i = 0; i < p->strategies.count; i++) {
+    if (!is_there(p, speed, i)) continue;
+    if (count[i] < least) least = count[i];
+    if (count[i] > most) most = count[i];
+  }
+  return least >= most;
+}
+
+/* How rarely and how often at a speed a strategy comes directly behind another. */
+static void neighbours(const ethd__protocol *p, const balance *b, size_t speed, uint32_t *least, uint32_t *most) {
+  for (size_t i = 0; i < p->strategies.count; i++)
+    for (size_t j = 0; j < p->strategies.count; j++) {
+      if (i == j || !is_there(p, speed, i) || !is_there(p, speed, j)) continue;
+      if (b->behind[speed][i][j] < *least) *least = b->behind[speed][i][j];
+      if (b->behind[speed][i][j] > *most) *most = b->behind[speed][i][j];
+    }
 }
 
 static bool is_balanced(const ethd__protocol *p, const balance *b) {
   bool even = true;
-  for (size_t speed = 0; speed < p->speeds.count; speed++)
-    even &= is_even(b->first[speed], p->strategies.count) && is_even(b->last[speed], p->strategies.count) &&
-            are_neighbours_even(p, b, speed);
+  for (size_t speed = 0; speed < p->speeds.count; speed++) {
+    uint32_t least = UINT32_MAX, most = 0;
+    neighbours(p, b, speed, &least, &most);
+    even &= is_even(p, speed, b->first[speed]) && is_even(p, speed, b->last[speed]) && least >= most;
+  }
   return even;
 }
 
@@ -122,14 +136,8 @@ static void print_counts(FILE *file, const ethd__protocol *p, uint32_t count[][E
 
 static void print_neighbours(FILE *file, const ethd__protocol *p, const balance *b) {
   uint32_t least = UINT32_MAX, most = 0;
-  for (size_t speed = 0; speed < p->speeds.count; speed++)
-    for (size_t i = 0; i < p->strategies.count; i++)
-      for (size_t j = 0; j < p->strategies.count; j++) {
-        if (i == j) continue;
-        if (b->behind[speed][i][j] < least) least = b->behind[speed][i][j];
-        if (b->behind[speed][i][j] > most) most = b->behind[speed][i][j];
-      }
-  if (p->strategies.count > 1) fprintf(file, "  neighbours %" PRIu32 " to %" PRIu32, least, most);
+  for (size_t speed = 0; speed < p->speeds.count; speed++) neighbours(p, b, speed, &least, &most);
+  if (least <= most) fprintf(file, "  neighbours %" PRIu32 " to %" PRIu32, least, most);
 }
 
 static void print_balance(FILE *file, const ethd__protocol *p) {

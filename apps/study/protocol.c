@@ -8,6 +8,7 @@
 
 #include "study/order.h"
 #include "study/protocol_keys.h"
+#include "text/csv.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
@@ -83,17 +84,22 @@ static bool is_outcome(const ethd__protocol *p, const char *word) {
   return false;
 }
 
-static ethd_status check_outcomes(const ethd_ini *ini, const ethd__entry *last, const ethd__protocol *p) {
-  ethd__entry e = *last;
-  e.key = ethd_ini_find(ini, "outcomes", "primary");
+/* Checks what the study says about its conditions. */
+static ethd_status check_conditions(const ethd__protocol *p, char *message) {
+  size_t trials = p->condition_count * (size_t)p->taps + p->speeds.count;
+  if (p->order == ETHD_ORDER_INTERLEAVED && trials > ETHD_STUDY_BLOCKS)
+    return ethd__say(message, ETHD_E_RANGE,
+                     "%s: study.order: %zu interleaved trials and trainings; at most %d are allowed", p->path, trials,
+                     ETHD_STUDY_BLOCKS);
   for (size_t i = 0; i < p->primary.count; i++) {
     char quote[ETHD_QUOTE_MAX];
     const char *word = p->primary.word[i];
     if (!is_outcome(p, word))
-      return ethd__entry_refuse(&e, ETHD_E_UNKNOWN,
-                                "found %s, FIGURE:STRATEGY-STRATEGY:SPEED of this study is allowed; figures are v_rvo, "
-                                "v_of, d_max, v_rmin, delta_s, eps, delay, peak_force, v_hand, touch_depth, eps_felt",
-                                ethd__quote(word, strlen(word), quote));
+      return ethd__say(message, ETHD_E_UNKNOWN,
+                       "%s:%d: outcomes.primary: found %s, FIGURE:STRATEGY-STRATEGY:SPEED of this study is allowed; "
+                       "figures are v_rvo, v_of, d_max, v_rmin, delta_s, eps, delay, peak_force, v_hand, touch_depth, "
+                       "eps_felt",
+                       p->path, p->primary.line, ethd__quote(word, strlen(word), quote));
   }
   return ETHD_OK;
 }
@@ -109,11 +115,9 @@ static ethd_status check(const ethd_ini *ini, const ethd__entry *last, ethd__pro
     return ethd__entry_refuse(&e, ETHD_E_RANGE,
                               "%" PRIu32 " attempts can't make %" PRIu32 " valid taps; at least as many are allowed",
                               p->attempts, p->taps);
-  e.key = ethd_ini_find(ini, "study", "order");
-  size_t trials = p->strategies.count * p->speeds.count * (size_t)p->taps + p->speeds.count;
-  if (p->order == ETHD_ORDER_INTERLEAVED && trials > ETHD_STUDY_BLOCKS)
-    return ethd__entry_refuse(&e, ETHD_E_RANGE, "%zu trials and trainings; at most %d are allowed", trials,
-                              ETHD_STUDY_BLOCKS);
+  e.key = ethd_ini_find(ini, "study", "conditions");
+  if (p->conditions && (p->strategies.line || p->speeds.line))
+    return ethd__entry_refuse(&e, ETHD_E_RANGE, "stands there beside study.strategies or study.speeds");
   e.key = motion;
   if (motion && p->hands != ETHD_HANDS_RECORDED)
     return ethd__entry_refuse(&e, ETHD_E_RANGE, "stands there without source = recorded");
@@ -135,8 +139,11 @@ static ethd_status fill(const ethd_ini *ini, const char *name, ethd__protocol *p
   }
   if (!status && !ethd__questionnaire_fill(&p->questionnaire)) status = ethd__no_memory(message, name);
   if (!status) status = check_questions(&e, p);
-  if (!status) status = check_outcomes(ini, &e, p);
-  return status ? status : check(ini, &e, p);
+  if (!status) status = check(ini, &e, p);
+  if (status || p->conditions) return status;
+  for (size_t i = 0; i < p->strategies.count * p->speeds.count; i++)
+    p->condition[p->condition_count++] = (ethd__condition){i % p->strategies.count, i / p->strategies.count, 0};
+  return check_conditions(p, message);
 }
 
 ethd_status ethd__protocol_parse(const char *text, size_t length, const char *name, const char *folder,
@@ -170,9 +177,54 @@ ethd_status ethd__protocol_load(const char *path, ethd__protocol *out, char mess
   return status;
 }
 
+/* ---- the file of conditions ---- */
+
+static ethd_status add_condition(ethd__protocol *p, const ethd_csv *csv, size_t row, char *message) {
+  char *const *cells = &csv->words[row * csv->columns];
+  ethd__condition c = {.line = ethd_csv_line(row)};
+  if (!ethd__word_list_put(&p->strategies, cells[ethd_csv_column(csv, "transition")], &c.strategy) ||
+      !ethd__word_list_put(&p->speeds, cells[ethd_csv_column(csv, "speed")], &c.speed))
+    return ethd__say(message, ETHD_E_RANGE, "%s:%zu: over %d strategies or speeds", csv->path, c.line,
+                     ETHD_STUDY_WORDS);
+  for (size_t i = 0; i < p->condition_count; i++)
+    if (p->condition[i].strategy == c.strategy && p->condition[i].speed == c.speed)
+      return ethd__say(message, ETHD_E_DUPLICATE, "%s:%zu: the condition of row %zu again; study.taps says how often",
+                       csv->path, c.line, p->condition[i].line);
+  p->condition[p->condition_count++] = c;
+  return ETHD_OK;
+}
+
+static ethd_status take_conditions(ethd__protocol *p, const ethd_csv *csv, char *message) {
+  ethd_status status = ETHD_OK;
+  char quote[ETHD_QUOTE_MAX];
+  for (size_t i = 0; i < csv->columns; i++)
+    if (strcmp(csv->names[i], "transition") && strcmp(csv->names[i], "speed"))
+      return ethd__say(message, ETHD_E_UNKNOWN, "%s:1: found the column %s; transition and speed are allowed",
+                       csv->path, ethd__quote(csv->names[i], strlen(csv->names[i]), quote));
+  if (csv->columns < 2 || !csv->rows)
+    return ethd__say(message, ETHD_E_RANGE,
+                     "%s:%d: columns transition and speed, and a row for each condition are needed", csv->path,
+                     csv->columns < 2 ? 1 : 2);
+  ethd__word_list_free(&p->strategies);
+  ethd__word_list_free(&p->speeds);
+  for (size_t row = 0; !status && row < csv->rows; row++) status = add_condition(p, csv, row, message);
+  return status ? status : check_conditions(p, message);
+}
+
+ethd_status ethd__protocol_conditions(ethd__protocol *p, const char *path, char message[ETHD_MESSAGE_MAX]) {
+  ethd_csv csv;
+  if (!p->conditions) return ETHD_OK;
+  ethd_status status = ethd_csv_read_words(path, &csv, message);
+  if (status) return status;
+  p->condition_path = strdup(path);
+  status = p->condition_path ? take_conditions(p, &csv, message) : ethd__no_memory(message, path);
+  ethd_csv_free(&csv);
+  return status;
+}
+
 void ethd__protocol_free(ethd__protocol *p) {
-  char *own[] = {p->path,  p->text,  p->folder, p->name,       p->config,
-                 p->plant, p->scene, p->motion, p->exclusions, p->markers};
+  char *own[] = {p->path,  p->text,   p->folder,     p->name,    p->config,     p->plant,
+                 p->scene, p->motion, p->exclusions, p->markers, p->conditions, p->condition_path};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) free(own[i]);
   ethd__word_list_free(&p->strategies);
   ethd__word_list_free(&p->speeds);

@@ -14,6 +14,8 @@
      record = all      none               lift = 0.005            m off the wall and back: a double tap
      rest = 3          blocks, 0: never   slack = 0.0004          m: so near to the ring people's fingers touch it
      markers = HOST:PORT                  see markers.h
+     conditions = FILE.csv                columns transition and speed, a row for each condition, in the place of
+                                          strategies and speeds, of which all combinations are conditions
 
      [device]                             [grid]                  --simulate: every combination
      config = q.ini                       contact.k_e = 1000,2500
@@ -48,6 +50,7 @@
 
 #define ETHD_STUDY_WORDS 8 /* strategies, speeds, values of a gain */
 #define ETHD_STUDY_GAINS 6 /* keys of a grid */
+#define ETHD_STUDY_CONDITIONS (ETHD_STUDY_WORDS * ETHD_STUDY_WORDS)
 #define ETHD_STUDY_PEOPLE 1000000u
 #define ETHD_STUDY_POINTS 100000u /* of a grid */
 #define ETHD_STUDY_ID_MAX 16
@@ -64,6 +67,11 @@ typedef struct ethd__word_list {
   int line; /* of the file, 0: the default */
 } ethd__word_list;
 
+typedef struct ethd__condition {
+  size_t strategy, speed; /* of the protocol */
+  size_t line;            /* of the file of conditions */
+} ethd__condition;
+
 typedef struct ethd__axis {
   char *key; /* section.key */
   ethd__word_list values;
@@ -75,6 +83,9 @@ typedef struct ethd__protocol {
   uint64_t seed;
   uint32_t participants, training, taps, attempts, rest;
   ethd__word_list strategies, speeds, primary;
+  char *conditions, *condition_path; /* as the key says; the file as it was read; NULL: all combinations */
+  ethd__condition condition[ETHD_STUDY_CONDITIONS];
+  size_t condition_count;
   char *exclusions, *markers; /* NULL: not given */
   ethd__order order;
   ethd__hands hands;
@@ -94,6 +105,10 @@ ETHD_MUST_CHECK ethd_status ethd__protocol_load(const char *path, ethd__protocol
 /* Does the same with text, which messages call `name`. */
 ETHD_MUST_CHECK ethd_status ethd__protocol_parse(const char *text, size_t length, const char *name, const char *folder,
                                                  ethd__protocol *out, char message[ETHD_MESSAGE_MAX]);
+
+/* Reads the study's conditions if it has a file of them; `path` is where it is. Until then such a study has none. */
+ETHD_MUST_CHECK ethd_status ethd__protocol_conditions(ethd__protocol *protocol, const char *path,
+                                                      char message[ETHD_MESSAGE_MAX]);
 
 void ethd__protocol_free(ethd__protocol *protocol);
 

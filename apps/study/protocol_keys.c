@@ -98,6 +98,14 @@ void ethd__word_list_free(ethd__word_list *words) {
   words->count = 0;
 }
 
+bool ethd__word_list_put(ethd__word_list *words, const char *word, size_t *index) {
+  for (*index = 0; *index < words->count; ++*index)
+    if (!strcmp(words->word[*index], word)) return true;
+  if (words->count == ETHD_STUDY_WORDS || !(words->word[words->count] = strdup(word))) return false;
+  words->count++;
+  return true;
+}
+
 static ethd_status add_word(const ethd__entry *e, ethd__word_list *words, const char *word) {
   for (size_t i = 0; i < words->count; i++)
     if (!strcmp(words->word[i], word)) return ethd__entry_refuse(e, ETHD_E_DUPLICATE, "%s stands there twice", word);
@@ -145,6 +153,7 @@ static const key_row rows[] = {
     {"study", "survey", set_switch, AT(survey), 0, 0, "off|on"},
     {"study", "rest", set_count, AT(rest), 0, 1000, NULL},
     {"study", "record", set_switch, AT(record), 0, 0, "none|all"},
+    {"study", "conditions", set_text, AT(conditions), 0, 0, NULL},
     {"study", "markers", set_text, AT(markers), 0, 0, NULL},
     {"device", "config", set_text, AT(config), 0, 0, NULL},
     {"device", "plant", set_text, AT(plant), 0, 0, NULL},

@@ -22,6 +22,9 @@ ETHD_MUST_CHECK ethd_status ethd__entry_set(const ethd__entry *e);
 /* Returns whether study files have such a section. */
 bool ethd__entry_section(const char *section);
 
+/* Gives the word's index, and adds it if it isn't there; false: there is no room for it. */
+bool ethd__word_list_put(ethd__word_list *words, const char *word, size_t *index);
+
 void ethd__word_list_free(ethd__word_list *words);
 
 #endif

@@ -172,7 +172,7 @@ TEST(test_interleaved_trials) {
   ck_assert_str_ne(order_of(0), first);
   ethd__protocol_free(&protocol);
   ck_assert_int_eq(parse("[study]\ntaps = 256\norder = interleaved\n"), ETHD_E_RANGE);
-  ck_assert_str_eq(message, "x.study:3: study.order: 1026 trials and trainings; at most 1024 are allowed");
+  ck_assert_str_eq(message, "x.study: study.order: 1026 interleaved trials and trainings; at most 1024 are allowed");
 }
 
 /* ---- people ---- */

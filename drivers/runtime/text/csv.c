@@ -9,6 +9,7 @@
 
 #define BYTES_MAX ((size_t)4 << 30)
 #define ROWS_MAX 10000000u
+#define WORD_ROWS_MAX 1000u
 #define COLUMNS_MAX 1024u
 
 typedef struct cell {
@@ -23,6 +24,7 @@ typedef struct table {
   size_t line;
   char separator; /* between cells */
   bool more;      /* cells are left in the line */
+  bool words;     /* cells are words, not numbers */
   char *message;
 } table;
 
@@ -167,8 +169,17 @@ static bool read_number(const table *r, const cell *c, double *out) {
   return ethd__number(text, c->length, out);
 }
 
+static ethd_status store_word(const table *r, const cell *c, const char *column, size_t index, ethd_csv *out) {
+  if (!c->length || c->length > ETHD_CSV_WORD)
+    return ethd__say(r->message, ETHD_E_RANGE, "%s:%zu: %.40s: a cell of %zu bytes; 1 to %d are allowed", r->name,
+                     r->line, column, c->length, ETHD_CSV_WORD);
+  out->words[index] = strndup(c->text, c->length);
+  return out->words[index] ? ETHD_OK : no_memory(r);
+}
+
 static ethd_status store(const table *r, const cell *c, const char *column, size_t index, ethd_csv *out) {
   char quote[ETHD_QUOTE_MAX];
+  if (r->words) return store_word(r, c, column, index, out);
   if (!c->length) {
     out->values[index] = NAN;
     out->empties[index / 8] |= (unsigned char)(1u << index % 8);
@@ -207,11 +218,13 @@ static size_t count_lines(const char *p, const char *end) {
 
 static ethd_status read_rows(table *r, const layout *l, ethd_csv *out) {
   size_t room = count_lines(r->rest, r->text_end);
-  if (room > ROWS_MAX)
-    return ethd__say(r->message, ETHD_E_RANGE, "%s: %zu rows, at most %u are allowed", r->name, room, ROWS_MAX);
+  const unsigned most = r->words ? WORD_ROWS_MAX : ROWS_MAX;
+  if (room > most)
+    return ethd__say(r->message, ETHD_E_RANGE, "%s: %zu rows, at most %u are allowed", r->name, room, most);
   out->values = malloc((room * out->columns + 1) * sizeof *out->values);
   out->empties = calloc(room * out->columns / 8 + 1, 1);
-  if (!out->values || !out->empties) return no_memory(r);
+  if (r->words) out->words = calloc((room + 1) * out->columns + 1, sizeof *out->words);
+  if (!out->values || !out->empties || (r->words && !out->words)) return no_memory(r);
   while (next_line(r)) {
     if (r->at == r->end && l->cells > 1) return refuse(r, ETHD_E_SYNTAX, NULL, "a blank line");
     ethd_status status = read_row(r, l, out);
@@ -229,9 +242,9 @@ static ethd_status check_text(const table *r) {
                    count_lines(r->rest, zero) + (zero == r->rest || zero[-1] == '\n'));
 }
 
-ethd_status ethd_csv_parse(const char *text, size_t length, const char *name, const char *const *wanted, ethd_csv *out,
-                           char message[ETHD_MESSAGE_MAX]) {
-  table r = {.rest = text, .text_end = text + length, .name = name, .message = message};
+static ethd_status parse(const char *text, size_t length, const char *name, const char *const *wanted, bool words,
+                         ethd_csv *out, char *message) {
+  table r = {.rest = text, .text_end = text + length, .name = name, .words = words, .message = message};
   layout *l = calloc(1, sizeof *l);
   *out = (ethd_csv){.path = strdup(name)};
   ethd_status status = l && out->path ? check_text(&r) : no_memory(&r);
@@ -244,20 +257,29 @@ ethd_status ethd_csv_parse(const char *text, size_t length, const char *name, co
   return status;
 }
 
-ethd_status ethd_csv_read_columns(const char *path, const char *const *wanted, ethd_csv *out,
-                                  char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd_csv_parse(const char *text, size_t length, const char *name, const char *const *wanted, ethd_csv *out,
+                           char message[ETHD_MESSAGE_MAX]) {
+  return parse(text, length, name, wanted, false, out, message);
+}
+
+static ethd_status read_file(const char *path, const char *const *wanted, bool words, ethd_csv *out, char *message) {
   char *text;
   size_t length;
   *out = (ethd_csv){0};
   ethd_status status = ethd_text_read(path, BYTES_MAX, &text, &length, message);
   if (status) return status;
-  status = ethd_csv_parse(text, length, path, wanted, out, message);
+  status = parse(text, length, path, wanted, words, out, message);
   free(text);
   return status;
 }
 
-ethd_status ethd_csv_read(const char *path, ethd_csv *out, char message[ETHD_MESSAGE_MAX]) {
-  return ethd_csv_read_columns(path, NULL, out, message);
+ethd_status ethd_csv_read_columns(const char *path, const char *const *wanted, ethd_csv *out,
+                                  char message[ETHD_MESSAGE_MAX]) {
+  return read_file(path, wanted, false, out, message);
+}
+
+ethd_status ethd_csv_read_words(const char *path, ethd_csv *out, char message[ETHD_MESSAGE_MAX]) {
+  return read_file(path, NULL, true, out, message);
 }
 
 int ethd_csv_column(const ethd_csv *csv, const char *name) {
@@ -266,14 +288,11 @@ int ethd_csv_column(const ethd_csv *csv, const char *name) {
   return -1;
 }
 
-bool ethd_csv_empty(const ethd_csv *csv, size_t row, int column) {
-  size_t index = row * csv->columns + (size_t)column;
-  return csv->empties[index / 8] >> index % 8 & 1;
-}
-
 void ethd_csv_free(ethd_csv *csv) {
   for (size_t i = 0; csv->names && i < csv->columns; i++) free(csv->names[i]);
   free(csv->names);
+  for (size_t i = 0; csv->words && i < (csv->rows + 1) * csv->columns; i++) free(csv->words[i]);
+  free(csv->words);
   free(csv->values);
   free(csv->empties);
   free(csv->path);

@@ -13,27 +13,38 @@ typedef struct ethd_csv {
   char **names;
   double *values;         /* values[row * columns + column]; NaN for "nan" and for an empty cell */
   unsigned char *empties; /* a bit per cell */
+  char **words;           /* of ethd_csv_read_words, in the place of values */
   char *path;             /* for messages */
 } ethd_csv;
 
-/* Reads a file whose columns all hold numbers. Refuses, with file:line: column: ragged and blank lines, a column that
-   occurs twice, a file without a header, bytes that aren't text, words, hex, trailing junk, "inf", over 1e7
-   rows. A cell may be empty: ethd_csv_empty. */
-ETHD_MUST_CHECK ethd_status ethd_csv_read(const char *path, ethd_csv *out, char message[ETHD_MESSAGE_MAX]);
-
-/* Does the same, but keeps only the columns named in `wanted` (ends with NULL); the others may have any name, or
-   none, and hold anything. A wanted column may be missing: ethd_csv_column then returns -1. */
+/* Reads the columns named in `wanted` (ends with NULL), which hold numbers; the others may have any name, or none, and
+   hold anything. A wanted column may be missing: ethd_csv_column then returns -1. NULL: all columns. Refuses, with
+   file:line: column: ragged and blank lines, a column that occurs twice, a file without a header, bytes that aren't text,
+   words, hex, trailing junk, "inf", over 1e7 rows. A cell may be empty: ethd_csv_empty. */
 ETHD_MUST_CHECK ethd_status ethd_csv_read_columns(const char *path, const char *const *wanted, ethd_csv *out,
                                                   char message[ETHD_MESSAGE_MAX]);
+
+static inline ETHD_MUST_CHECK ethd_status ethd_csv_read(const char *path, ethd_csv *out,
+                                                        char message[ETHD_MESSAGE_MAX]) {
+  return ethd_csv_read_columns(path, NULL, out, message);
+}
 
 /* Reads from text with a 0 at text[length]; messages call it `name`; wanted NULL: all columns. */
 ETHD_MUST_CHECK ethd_status ethd_csv_parse(const char *text, size_t length, const char *name, const char *const *wanted,
                                            ethd_csv *out, char message[ETHD_MESSAGE_MAX]);
 
+/* Reads a file whose columns all hold words of at most ETHD_CSV_WORD bytes; refuses longer and empty cells, too,
+   and over 1000 rows. */
+#define ETHD_CSV_WORD 64
+ETHD_MUST_CHECK ethd_status ethd_csv_read_words(const char *path, ethd_csv *out, char message[ETHD_MESSAGE_MAX]);
+
 /* Returns the index of a column, -1 if the file doesn't have it. */
 int ethd_csv_column(const ethd_csv *csv, const char *name);
 
-bool ethd_csv_empty(const ethd_csv *csv, size_t row, int column);
+static inline bool ethd_csv_empty(const ethd_csv *csv, size_t row, int column) {
+  size_t index = row * csv->columns + (size_t)column;
+  return csv->empties[index / 8] >> index % 8 & 1;
+}
 
 /* Returns the line of the file on which a row is. */
 static inline size_t ethd_csv_line(size_t row) { return row + 2; }
