@@ -4,6 +4,7 @@ import csv, glob, os, random, re, shutil, sqlite3, subprocess, sys, tempfile, th
 
 KILLS = {"simulated": 6, "mouse": 4}
 ANSWERS = ["2", "4"]  # that the mouse's people give
+SLIPPED = "the hand slipped"
 
 
 TABLES = ("tap", "event", "answer", "survey")
@@ -143,6 +144,20 @@ def answer(hand, station):
             time.sleep(0.05)
 
 
+def reject(hand, station):
+    """The experimenter rejects one tap that counts, with a reason, before anything else comes."""
+    last = ask(station.folder, "select participant, block, attempt, valid from tap order by id desc limit 1")
+    if not last or count(station.folder, "event", "event = 'reject'"):
+        return
+    who, block, _, valid = last[0]
+    plan = {(r["participant"], r["block"]): r["part"] for r in rows(station.folder + "/orders.csv")}
+    if valid and plan[f"P{who}", str(block)] == "test":
+        hand.keys("r")
+        hand.say('type --delay 1 "' + SLIPPED + '"')
+        time.sleep(0.3)
+        hand.keys("Return")
+
+
 def cycle(hand, station):
     """Whatever page is shown, it takes some of these keys and the others do no harm: consent, instruction, block, a tap,
     answers, their confirmation, the hand-over, the end."""
@@ -152,6 +167,7 @@ def cycle(hand, station):
         hand.keys("Return P 1 4 Return y space")
     hand.keys("space")
     hand.tap()
+    reject(hand, station)
     answer(hand, station)
     hand.keys("space")
 
@@ -194,7 +210,7 @@ def judge(folder, taps, attempts):
     assert set(blocks) == set(planned), ("blocks are missing", set(planned) ^ set(blocks))
     for key, mine in blocks.items():
         assert [int(r["attempt"]) for r in mine] == list(range(1, len(mine) + 1)), ("lost or doubled", key)
-        valid = [r["valid"] == "1" for r in mine]
+        valid = [r["valid"] == "1" and r["checked"] != "rejected" for r in mine]
         if mine[0]["part"] == "test":
             assert (sum(valid) == taps and valid[-1]) or len(mine) == attempts, ("ended too soon", key)
     # each row has its folder, and no folder is without
@@ -210,6 +226,12 @@ def judge(folder, taps, attempts):
     people = rows(both + "/participants.csv")
     assert [(r["participant"], r["status"], r["analysed"]) for r in people] == \
         [(f"P{k:02d}", "complete", "1") for k in range(1, 15)], people
+    rejected = [(r["participant"], r["block"], r["attempt"]) for r in table if r["checked"] == "rejected"]
+    events = [r for r in rows(both + "/events.csv") if r["event"] == "reject"]
+    assert rejected == [(r["participant"], r["block"], r["attempt"]) for r in events] and len(rejected) == 1, (rejected, events)
+    assert events[0]["detail"] == SLIPPED and events[0]["participant"] in ("P13", "P14"), events
+    assert [int(r["rejected"]) for r in people] == [int(r["participant"] == rejected[0][0]) for r in people], people
+    assert sum(int(r["taps"]) for r in people) == sum(r["part"] == "test" for r in table), people
     agreed = [r["participant"] for r in rows(both + "/events.csv") if r["event"] == "consent"]
     assert agreed == ["P13", "P14"], agreed
     print(f"{len(table)} taps of {len(people)} people in {len(blocks)} blocks, {len(survey)} questionnaires")

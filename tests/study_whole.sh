@@ -1,13 +1,14 @@
 #!/bin/sh
-# A whole study at two stations: 12 simulated people, and 2 whom the mouse leads on a screen, with consent, hand-over and
-# questions; ended at ten random moments by SIGKILL, gone on with, merged, reported. Nothing is lost, doubled or mislabelled.
+# A whole study at two stations: 12 simulated people, and 2 whom the mouse leads on a screen, with consent, hand-over,
+# practice, questions and a tap that is rejected; ended at ten random moments by SIGKILL, gone on with, exported, merged,
+# reported. Nothing is lost, doubled or mislabelled.
 # ETHD_STUDY_WHOLE=1 (make stress): the paper's speeds and three valid taps a cell. No time is asserted.
 . tests/begin.sh
 [ -z "${SAN:-}" ] || { echo "SKIP: the window's libraries aren't made for sanitizers"; exit 77; }
 server=
 trap 'rm -rf "$folder"; [ -z "$server" ] || kill $server 2>/dev/null' EXIT
 study=$BUILD/bin/ethd-study
-speeds=low taps=1 attempts=1 training=0
+speeds=low taps=1 attempts=2 training=1
 [ -z "${ETHD_STUDY_WHOLE:-}" ] || { speeds=low,high; taps=3; attempts=4; training=1; }
 
 cat >"$folder/whole.study" <<END
@@ -34,7 +35,10 @@ END
 "${PYTHON:-python3}" tests/study_whole.py "$study" "$folder" || fail "the stations"
 [ $failed = 0 ] || exit 1
 
-# ---- merged, checked, replayed, reported ----
+# ---- exported, merged, checked, replayed, reported ----
+mv "$folder/mouse/taps.csv" "$folder/mouse/events.csv" "$folder"
+"$study" --export "$folder/mouse" >"$folder/out" 2>&1 || fail "the export: $(cat "$folder/out")"
+for table in taps events; do cmp "$folder/$table.csv" "$folder/mouse/$table.csv" || fail "the export's $table"; done
 "$study" --merge "$folder/simulated" "$folder/mouse" --out "$folder/both" >"$folder/out" 2>&1 || fail "merging: $(cat "$folder/out")"
 "$study" --verify "$folder/both" >"$folder/out" 2>&1 || fail "sums: $(cat "$folder/out")"
 (cd "$folder/both" && sha256sum --quiet -c SHA256SUMS) >"$folder/out" 2>&1 || fail "sha256sum: $(cat "$folder/out")"
