@@ -79,6 +79,6 @@ gnuplot -e "in='$folder/felt-n.csv'; out='$folder/felt-n.png'; plant='n'; a=49; 
 gnuplot -e "in='$folder/felt-p.csv'; out='$folder/felt-p.png'; plant='p'; a=29.7; gap=0.00549" "$plots/ahead.gp"
 gnuplot -e "in='$folder/off.csv'; out='$folder/off.png'" "$plots/ahead-sensitivity.gp"
 for speed in low high; do
-  gnuplot -e "in='$folder/traces'; speed='$speed'; out='$folder/taps-$speed.png'" "$plots/ahead-taps.gp"
+  gnuplot -e "in='$folder/traces'; speed='$speed'; out='$folder/taps-$speed.png'" "$plots/taps.gp"
 done
 echo "$folder"

@@ -19,7 +19,7 @@ for speed in low high; do
   for law in abrupt smooth offset predictive; do
     plot "in='traces/$law-$speed.csv'; out='$law-$speed.png'; title='$law, $speed speed'; plant='$plant'" tap.gp
   done
-  plot "in='traces'; speed='$speed'; out='beside-$speed.png'; plant='$plant'" ahead-taps.gp
+  plot "in='traces'; speed='$speed'; out='beside-$speed.png'; plant='$plant'" taps.gp
 done
 
 # The paper's study as it was done, with three people; and a crowd of 400 beside it.

@@ -60,13 +60,13 @@ fi
 [ "$(wc -l <README.md)" -lt 150 ] || fail "$(wc -l <README.md) lines: fewer than 150 are read"
 
 # The picture: of this script and these ticks, which are the same everywhere; its pixels depend on gnuplot and its fonts.
-drawn=18e3a0f56eb87754eeb243610cff0a98745456fc089c66ea31ad6635bf4e3563
-"$BUILD/bin/ethd-tap" --plant q --taps 400 --transition offset --speed high --trace "$work/traces" >/dev/null
-[ "$(cat apps/plot/tap.gp "$work/traces/offset-high.csv" apps/plot/offset.png | sha256sum)" = "$drawn  -" ] ||
+drawn=6031d2c4a615845fb2f96b02f4987c137308f366231989d4db3562aaa9f9576d
+"$BUILD/bin/ethd-tap" --taps 400 --transition smooth,offset,predictive --speed high --trace "$work/traces" >/dev/null
+[ "$(cat apps/plot/taps.gp "$work"/traces/*.csv apps/plot/taps.png | sha256sum)" = "$drawn  -" ] ||
   fail "the picture isn't what is drawn today. Look at a new one, and give its sum here:
-  build/bin/ethd-tap --plant q --taps 400 --transition offset --speed high --trace traces
-  gnuplot -e \"in='traces/offset-high.csv'; out='apps/plot/offset.png'; title='offset, high speed'; plant='q'; scale=0.68\" apps/plot/tap.gp
-  cat apps/plot/tap.gp traces/offset-high.csv apps/plot/offset.png | sha256sum"
+  build/bin/ethd-tap --taps 400 --transition smooth,offset,predictive --speed high --trace traces
+  gnuplot -e \"in='traces'; out='apps/plot/taps.png'; scale=0.7\" apps/plot/taps.gp
+  cat apps/plot/taps.gp traces/*.csv apps/plot/taps.png | sha256sum"
 
 for n in 1 2; do echo "block $n: $(wc -l <"$work/$n.c") lines"; done
 cat "$work/app.out" | head -n 5

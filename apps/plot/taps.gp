@@ -1,10 +1,11 @@
 # As the paper's figures 9 and 10, or 11 and 12, and the law that brakes before the wall beside them: a typical tap of each.
-#   gnuplot -e "in='traces'; speed='high'; out='taps.png'" ahead-taps.gp
-# in: a folder of ethd-tap --trace with smooth-, offset- and predictive-SPEED.csv. plant names the plant in the title.
-if (!exists("in") || !exists("out")) { print "ahead-taps.gp: set in and out"; exit status 2 }
+#   gnuplot -e "in='traces'; speed='high'; out='taps.png'" taps.gp
+# in: a folder of ethd-tap --trace with smooth-, offset- and predictive-SPEED.csv. plant names the plant in the title, scale that of the picture.
+if (!exists("in") || !exists("out")) { print "taps.gp: set in and out"; exit status 2 }
 if (!exists("speed")) speed = "high"
-if (!exists("plant")) plant = "n"
-set terminal pngcairo size 1500,900 font "Sans,14" background "#ffffff"
+if (!exists("plant")) plant = "q"
+if (!exists("scale")) scale = 1.0
+set terminal pngcairo size 1500*scale,900*scale font "Sans,14" fontscale scale linewidth scale background "#ffffff"
 set output out
 set datafile separator comma
 set datafile columnheaders
