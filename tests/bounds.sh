@@ -39,13 +39,13 @@ cp "$BUILD"/share/ethd/b.* "$folder/"
 says "$folder/b.out" '0.543 without lag'
 
 # A gain that is too large is named, with what to change; after that change none is named.
-printf '[transition]\nb_d = 1000\n' >"$folder/bad.ini"
+printf '[device]\nplant = n\n[transition]\nb_d = 1000\n' >"$folder/bad.ini"
 "$check" "$folder/bad.ini" >"$folder/bad"
 says "$folder/bad" '^2 bounds exceeded'
 says "$folder/bad" 'transition.b_d  *1000 .*EXCEEDED'
 most=$(sed -n 's/.*transition.b_d at most \([0-9.]*\).*/\1/p' "$folder/bad" | head -n 1)
 [ -n "$most" ] || fail "it doesn't say what to change"
-printf '[transition]\nb_d = %s\n' "$(awk -v m="$most" 'BEGIN { print 0.999 * m }')" >"$folder/good.ini"
+printf '[device]\nplant = n\n[transition]\nb_d = %s\n' "$(awk -v m="$most" 'BEGIN { print 0.999 * m }')" >"$folder/good.ini"
 "$check" "$folder/good.ini" >"$folder/good"
 says "$folder/good" '^0 bounds exceeded'
 
@@ -60,7 +60,7 @@ sed 's/^plant = p/plant = ideal/' "$folder/p.ini" >"$folder/ideal.ini"
 says "$folder/ideal.out" 'one encoder count makes 0 mm/s: the ring is quiet until it is pushed'
 
 # A spring is stable by friction alone; a delay may be a fraction of a tick; options win over the plant.
-printf '[contact]\nlaw = spring\n' >"$folder/spring.ini"
+printf '[device]\nplant = n\n[contact]\nlaw = spring\n' >"$folder/spring.ini"
 "$check" --delay 0 "$folder/spring.ini" >"$folder/out"
 says "$folder/out" '1.25 Ns/m'
 says "$folder/out" '^0 bounds exceeded'

@@ -37,7 +37,7 @@ cp apps/config/wall.scene "$work"
 { sed '/^\[transition\]/,/^$/d' apps/config/n.ini; printf '\n[plugins]\nfile = mine.so\n[transition]\nlaw = mine\n'; } >"$work/mine.ini"
 [ -n "${SAN:-}" ] || "$prefix/bin/ethd-tap" --config "$work/mine.ini" --transition mine,abrupt --taps 4 --speed low --csv "$work/mine.csv" >"$work/out" 2>&1 ||
   fail "the law: $(cat "$work/out")"
-[ -n "${SAN:-}" ] || "$prefix/bin/ethd-tap" --config "$work/mine.ini" --taps 1 --speed low | grep -c '^[a-z]* *low  ' | grep -qx 5 ||
+[ -n "${SAN:-}" ] || "$prefix/bin/ethd-tap" --config "$work/mine.ini" --validity finger --taps 1 --speed low | grep -c '^[a-z]* *low  ' | grep -qx 5 ||
   fail "the configuration's own law isn't the fifth"
 [ -n "${SAN:-}" ] || awk -F, '$2 == "mine" && $6 == "ok" { v[++n] = $9 } $2 == "abrupt" && $6 == "ok" { m++; d += $9 }
   END { for (i = 1; i <= n; i++) s += v[i]; exit !(n && m && s / n < 0.8 * d / m) }' "$work/mine.csv" || fail "the law's taps: $(cat "$work/mine.csv")"

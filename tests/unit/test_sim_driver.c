@@ -150,11 +150,11 @@ TEST(test_adds) {
   ethd_driver_sim.close(device);
 }
 
-/* What the motors give: 5.357 N at the shorter link. */
+/* What the motors give: 5.016 N at the shorter link. */
 TEST(test_limits) {
   void *device = open_with(NULL, 0);
   ethd_limits limits = ethd_driver_sim.limits(device);
-  ck_assert_double_eq_tol(limits.torque, 5.357 * 0.25, 1e-15);
+  ck_assert_double_eq_tol(limits.torque, 5.016 * 0.25, 1e-15);
   ck_assert(isinf(limits.torque_rate) && isinf(limits.speed));
   ethd_driver_sim.close(device);
 }
@@ -185,7 +185,7 @@ TEST(test_meet) {
   void *device = open_with(near, 3);
   ethd_sense s = {0};
   ck_assert_int_eq(ethd_driver_sim.read(device, 0, &s), ETHD_OK);
-  ck_assert_double_eq_tol(s.finger[0], 0.1 + 31.6e-3, 10e-3);
+  ck_assert_double_eq_tol(s.finger[0], 0.1 + 47.67e-3, 10e-3);
   ck_assert_double_eq_tol(s.finger[1], 0.3, 1e-3);
   ethd_driver_sim.close(device);
   const ethd_setting far = {"meet_x", "0.6", 1};
