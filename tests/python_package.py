@@ -129,7 +129,7 @@ c.post({"transition.law": "smooth", "tracking.k_t": 60, "transition.swap_time": 
 refuses("has not taken", lambda: c.post({"tracking.k_t": 50}), ethd.Busy)
 after = c.step(sense).tau
 assert [e.kind for e in c.events()] == ["taken"] and np.allclose(c.step(sense).tau, 2 * before, rtol=1e-9), (before, after)
-refuses("contact.k_e: found \"-3\", 0 to 1000000", lambda: c.post({"contact.k_e": -3}))
+refuses("contact.k_e: found \"-3.0\", 0 to 1000000", lambda: c.post({"contact.k_e": -3}))
 refuses("not a key of kelvin-voigt", lambda: c.post({"contact.k": 3}))
 refuses("contact.law: found 'rubber', kelvin-voigt, spring, ", lambda: c.post({"contact.law": "rubber"}))
 refuses("/nowhere.ini: No such file", lambda: ethd.Controller("/nowhere.ini"))

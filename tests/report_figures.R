@@ -120,7 +120,7 @@ if (file.exists(file.path(study, declared))) {
     r <- rows[k, ]; figure <- taps[[r$metric]]
     x <- own(figure, r$transition_b, r$speed) - own(figure, r$transition_a, r$speed); x <- x[!is.na(x)]
     difference(paste("primary", k), r, x, "mean_b_minus_a")
-    reached <- function(n) power.t.test(n, mean(x), sd(x), 0.025, type = "paired", strict = TRUE)$power >= 0.8
+    reached <- function(n) power.t.test(n, mean(x), sd(x), 0.025, type = "paired")$power >= 0.8
     below <- 6; n <- 10000 # 2^(1 - 7) is the first p of signs under 0.025
     while (n - below > 1) { middle <- (n + below) %/% 2; if (reached(middle)) n <- middle else below <- middle }
     same(paste("participants needed", k), as.numeric(sub(".* ", "", power[k])), n)
