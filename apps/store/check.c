@@ -156,10 +156,11 @@ static ethd_status check_hash(ethd__study_store *s, const char *hash, char *mess
   char *begun;
   ethd_status status = ethd__store_first(s, "SELECT group_concat(hash) FROM study", &begun, message);
   if (!status && (!begun || strcmp(begun, hash)))
-    status = ethd__say(message, ETHD_E_SYNTAX,
-                       "%s: begun with other files than study.ini, config.ini, scene.scene, device.plant and movements "
-                       "of now; put them back",
-                       s->path);
+    status = ethd__say(
+        message, ETHD_E_SYNTAX,
+        "%s: begun with other files than study.ini, config.ini, scene.scene, device.plant, conditions and movements "
+        "of now; put them back",
+        s->path);
   free(begun);
   return status;
 }
