@@ -37,24 +37,13 @@ static const sensor_key rows[] = {
 
 #define ROWS (sizeof rows / sizeof *rows)
 
-static ethd_status refuse(const calibration_source *r, const ethd_ini_key *k, ethd_status status, const char *allowed) {
-  const ethd__key key = ethd__key_of(r->name, k, r->message);
-  return ethd__key_found(&key, status, allowed);
-}
-
-static ethd_status unknown(const calibration_source *r, const ethd_ini_key *k, const char *allowed) {
-  const ethd__key key = ethd__key_of(r->name, k, r->message);
-  return ethd__key_refuse(&key, ETHD_E_UNKNOWN, "unknown key at level %s; %s are allowed",
+static ethd_status unknown(const calibration_source *r, const ethd__key *k, const char *allowed) {
+  return ethd__key_refuse(k, ETHD_E_UNKNOWN, "unknown key at level %s; %s are allowed",
                           ethd__level_names[r->out->level], allowed);
 }
 
-static ethd_status number(const calibration_source *r, const ethd_ini_key *k, const ethd_param *row, double *out) {
-  const ethd__key key = ethd__key_of(r->name, k, r->message);
-  return ethd__key_value(&key, row, out);
-}
-
-static ethd_status word(const calibration_source *r, const ethd_ini_key *k, char out[ETHD__SERIAL_MAX]) {
-  if (strlen(k->value) >= ETHD__SERIAL_MAX) return refuse(r, k, ETHD_E_SYNTAX, "at most 47 characters");
+static ethd_status word(const ethd__key *k, char out[ETHD__SERIAL_MAX]) {
+  if (strlen(k->value) >= ETHD__SERIAL_MAX) return ethd__key_found(k, ETHD_E_SYNTAX, "at most 47 characters");
   strcpy(out, k->value);
   return ETHD_OK;
 }
@@ -70,35 +59,35 @@ static double *field(ethd__sensor *s, const sensor_key *r) { return (double *)((
 /* ---- sections ---- */
 
 static ethd_status read_level(const calibration_source *r, const ethd_ini_key *k) {
-  for (int i = 0; i < ETHD__LEVEL_COUNT; i++)
-    if (!strcmp(k->value, ethd__level_names[i])) {
-      r->out->level = (ethd__level)i;
-      return ETHD_OK;
-    }
-  return refuse(r, k, ETHD_E_UNKNOWN, "none, common, gain, law or table");
+  static const ethd_param level = {"level", "none|common|gain|law|table", 0, ETHD__LEVEL_COUNT - 1, 0, "what is known"};
+  const ethd__key key = ethd__key_of(r->name, k, r->message);
+  double value = 0;
+  ethd_status status = ethd__key_value(&key, &level, &value);
+  r->out->level = (ethd__level)value;
+  return status;
 }
 
-static ethd_status read_general(const calibration_source *r, const ethd_ini_key *k) {
+static ethd_status read_general(const calibration_source *r, const ethd__key *k) {
   if (!strcmp(k->key, "level")) return ETHD_OK; /* has been read */
-  if (!strcmp(k->key, "date")) return word(r, k, r->out->date);
-  if (!strcmp(k->key, "serial")) return word(r, k, r->out->serial);
-  if (!strcmp(k->key, "residual")) return number(r, k, &find("residual")->param, &r->out->residual);
+  if (!strcmp(k->key, "date")) return word(k, r->out->date);
+  if (!strcmp(k->key, "serial")) return word(k, r->out->serial);
+  if (!strcmp(k->key, "residual")) return ethd__key_value(k, &find("residual")->param, &r->out->residual);
   return unknown(r, k, "level, date, serial, residual");
 }
 
-static ethd_status read_law(const calibration_source *r, const ethd_ini_key *k) {
+static ethd_status read_law(const calibration_source *r, const ethd__key *k) {
   const sensor_key *which = find(k->key);
   double value;
   if (!which || which->from == ETHD__LEVEL_NONE) return unknown(r, k, "a, p, d0");
   if (r->out->level == ETHD__LEVEL_NONE || r->out->level == ETHD__LEVEL_TABLE)
     return ethd__say(r->message, ETHD_E_ARGUMENT, "%s:%d: [law]: level %s has none", r->name, k->line,
                      ethd__level_names[r->out->level]);
-  ethd_status status = number(r, k, &which->param, &value);
+  ethd_status status = ethd__key_value(k, &which->param, &value);
   for (int i = 0; i < ETHD_RAYS && !status; i++) *field(&r->out->sensors[i], which) = value;
   return status;
 }
 
-static ethd_status read_point(const calibration_source *r, const ethd_ini_key *k, ethd__sensor *s) {
+static ethd_status read_point(const calibration_source *r, const ethd__key *k, ethd__sensor *s) {
   static const char allowed[] = "COUNTS_ABOVE_DARK METRES, counts falling and metres rising from point to point,";
   char expected[16];
   size_t n = strcspn(k->value, " \t"), gap = strspn(k->value + n, " \t");
@@ -108,24 +97,24 @@ static ethd_status read_point(const calibration_source *r, const ethd_ini_key *k
   if (s->points == ETHD__POINTS_MAX || strcmp(k->key, expected))
     return unknown(r, k, "dark, residual, serial, point0 to point23 in order");
   if (!ethd__number(k->value, n, &above) || !gap || !ethd__number(second, strlen(second), &at))
-    return refuse(r, k, ETHD_E_SYNTAX, allowed);
+    return ethd__key_found(k, ETHD_E_SYNTAX, allowed);
   bool falls = s->points == 0 || (above < s->above[s->points - 1] && at > s->at[s->points - 1]);
   if (!(above > 0 && above < 65536 && at >= 0 && at <= ETHD__DISTANCE_MAX && falls))
-    return refuse(r, k, ETHD_E_RANGE, allowed);
+    return ethd__key_found(k, ETHD_E_RANGE, allowed);
   s->above[s->points] = above;
   s->at[s->points++] = at;
   return ETHD_OK;
 }
 
-static ethd_status read_sensor(const calibration_source *r, const ethd_ini_key *k, int sensor) {
+static ethd_status read_sensor(const calibration_source *r, const ethd__key *k, int sensor) {
   static const char *const allowed[] = {"dark, residual, serial", "dark, residual, serial",
                                         "dark, residual, serial, a, d0", "dark, residual, serial, a, p, d0",
                                         "dark, residual, serial, point0 to point23"};
   ethd__sensor *s = &r->out->sensors[sensor];
   const sensor_key *which = find(k->key);
-  if (!strcmp(k->key, "serial")) return word(r, k, s->serial);
+  if (!strcmp(k->key, "serial")) return word(k, s->serial);
   if (which && which->from <= r->out->level && which->to >= r->out->level)
-    return number(r, k, &which->param, field(s, which));
+    return ethd__key_value(k, &which->param, field(s, which));
   if (!which && r->out->level == ETHD__LEVEL_TABLE) return read_point(r, k, s);
   return unknown(r, k, allowed[r->out->level]);
 }
@@ -140,7 +129,7 @@ static int sensor_of(const char *section) {
   return -1;
 }
 
-static ethd_status read_key(const calibration_source *r, const ethd_ini_key *k) {
+static ethd_status read_key(const calibration_source *r, const ethd__key *k) {
   if (!strcmp(k->section, "calibration")) return read_general(r, k);
   if (!strcmp(k->section, "law")) return read_law(r, k);
   return ETHD_OK;
@@ -178,11 +167,12 @@ static ethd_status read_all(calibration_source *r, const ethd_ini *ini) {
   if (!level) return ethd__say(r->message, ETHD_E_ARGUMENT, "%s: calibration.level is missing", r->name);
   ethd_status status = read_level(r, level);
   if (!status) status = check_sections(r, ini);
-  for (uint32_t i = 0; i < ini->count && !status; i++) status = read_key(r, &ini->keys[i]);
-  for (uint32_t i = 0; i < ini->count && !status; i++) { /* once the common law is known */
-    int sensor = sensor_of(ini->keys[i].section);
-    if (sensor >= 0) status = read_sensor(r, &ini->keys[i], sensor);
-  }
+  for (int pass = 0; pass < 2; pass++) /* sensors once the common law is known */
+    for (uint32_t i = 0; i < ini->count && !status; i++) {
+      const ethd__key key = ethd__key_of(r->name, &ini->keys[i], r->message);
+      int sensor = sensor_of(key.section);
+      if (pass == (sensor >= 0)) status = sensor >= 0 ? read_sensor(r, &key, sensor) : read_key(r, &key);
+    }
   return status ? status : check_whole(r);
 }
 
