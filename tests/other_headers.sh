@@ -148,14 +148,14 @@ device_is() { # WHAT CONFIGURATION LOOP: with the last headers
 $3" ] || fail "$1: $said, not $2 and $3"
 }
 rm -r "$work/include" && cp -r include "$work/include"
-device_is "these headers" "configuration read" "driver is missing"
+device_is "these headers" "configuration read" "device is missing"
 other "a longer sense, once more" sense.h 's/^  X(double, q, 2/  X(double, more, 16, "1", "more") \\\n&/' \
   "0 bytes, -11, ethd_sense, found $((sense + 128)) of $sense"
 device_is "a longer sense" "ethd_sense: a struct of other headers; compile again with this version's; found $((sense + 128)), allowed $sense to $sense" \
   "ethd_loop_row, found $((row + 128)) of $row"
 other "a longer configuration" config.h 's/^  uint32_t plugin_count;/&\n  char more[64];/' "0 bytes, 0, , found 0 of 0"
 device_is "a longer configuration" "ethd_config: a struct of other headers; compile again with this version's; found $((config + 64)), allowed $config to $config" \
-  "driver is missing"
+  "device is missing"
 other "a longer definition" loop.h 's/^  uint32_t rows; .*/&\n  char more[64];/' "0 bytes, 0, , found 0 of 0"
 device_is "a longer definition" "configuration read" "ethd_loop_def, found $((def + 64)) of $def"
 

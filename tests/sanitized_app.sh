@@ -25,6 +25,11 @@ static void millisecond(void) {
   const struct timespec t = {0, 1000000};
   nanosleep(&t, NULL);
 }
+static device d;
+static ethd_status open_it(const ethd_device_def *def, void **out, char *message) {
+  return (void)def, (void)message, *out = &d, ETHD_OK;
+}
+static void close_it(void *it) { (void)it; }
 static ethd_status start(void *d) { return ((device *)d)->q = 1.5, ETHD_OK; }
 static ethd_status read_it(void *d_, int64_t now, ethd_sense *out) {
   device *d = d_;
@@ -51,14 +56,14 @@ static ethd_status push(const double *p, void *state, double gap, double speed, 
   return ETHD_OK;
 }
 
-static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "app", .brief = "app", .start = start,
+static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "app", .brief = "app", .open = open_it, .close = close_it, .start = start,
                                    .read = read_it, .write = write_it, .units = units, .service = service, .safe = safe};
 static const ethd_param params[] = {{"k", "N/m", 0, 1e4, 100, "stiffness"}};
 static const ethd_contact_law law = {.law = {sizeof law, ETHD_ABI, ETHD_CONTACT, 8, "app", "app", params, 1, NULL, NULL}, .step = push};
 
 int main(void) {
   const char wall[] = "halfplane -1 0 -0.5";
-  device d = {NULL, 0, 0};
+  char message[ETHD_MESSAGE_MAX];
   ethd_setup setup = ethd_setup_default();
   ethd_scene *scene;
   ethd_control *control;
@@ -69,8 +74,9 @@ int main(void) {
   ethd_setup_contact(&setup, &law);
   if (ethd_control_create(&setup, &control, &error) || ethd_cell_create(8 * sizeof(double), &d.cell, &error)) return 3;
   ethd_loop_def def = ethd_loop_default();
-  def.driver = &driver;
-  def.device = &d;
+  const ethd_driver *const drivers[] = {&driver, NULL};
+  const ethd_device_def app = {.setup = &setup, .folder = "."};
+  if (ethd_device_open("app", drivers, &app, &def.device, message)) return printf("%s\n", message), 8;
   def.control = control;
   if (ethd_loop_create(&def, &loop, &error)) return 4;
   if (ethd_loop_start(loop, &error)) return printf("start: %s %g\n", error.name, error.found), 5;
@@ -86,6 +92,7 @@ int main(void) {
   ethd_loop_stop(loop);
   if (ethd_loop_join(loop)) return 6;
   ethd_loop_destroy(loop);
+  ethd_device_close(def.device);
   ethd_control_destroy(control);
   ethd_cell_destroy(d.cell);
   ethd_scene_destroy(scene);
