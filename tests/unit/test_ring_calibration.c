@@ -138,8 +138,7 @@ static const struct {
   const char *text, *says;
 } bads[] = {
     {"", "x: calibration.level is missing"},
-    {"[calibration]\nlevel = best\n",
-     "x:2: calibration.level: found \"best\", none|common|gain|law|table is allowed"},
+    {"[calibration]\nlevel = best\n", "x:2: calibration.level: found \"best\", none|common|gain|law|table is allowed"},
     {"[calibration]\nlevel = none\n[law]\na = 1\n", "x:4: [law]: level none has none"},
     {"[calibration]\nlevel = common\n[law]\na = 1x\n",
      "x:4: law.a: found \"1x\", 1e-09 to 1000000000 counts m^p is allowed"},
