@@ -56,7 +56,7 @@ $CC "$at/init.c" "$loop/xenomai.o" -L"$at/lib" -lxenomai-standin -Wl,-rpath,"$at
 export XENO_STANDIN_CORE=cobalt
 cobalt=$at/build-cobalt
 build RT=cobalt XENO_CONFIG="$here/xeno-config" "$cobalt/bin/ethd-run" "$cobalt/tests/test_loop" "$cobalt/tests/test_loop_thread" \
-  "$cobalt/share/ethd/n.plant" || { tail -n 30 "$at/log"; fail "RT=cobalt"; exit 1; }
+  "$cobalt/share/ethd/q.plant" || { tail -n 30 "$at/log"; fail "RT=cobalt"; exit 1; }
 for name in clock_nanosleep clock_gettime; do
   nm -u "$cobalt/obj/drivers/runtime/loop/cycle.o" | grep -q " __cobalt_$name" || fail "cobalt: cycle.o doesn't call __cobalt_$name"
   nm -u "$cobalt/obj/drivers/runtime/loop/cycle.o" | grep -q " $name" && fail "cobalt: cycle.o calls $name past the core"
