@@ -167,8 +167,8 @@ static ethd_status prepare(const ethd_device_def *def, ring *r, char *message) {
 static ethd_status no_frames(const ring *r, const ethd__decoder *d, uint64_t bytes, char *message) {
   double seconds = r->settings.p[ETHD__RING_PATIENCE];
   if (!bytes)
-    return ethd__say(message, ETHD_E_DEVICE, "%s: no bytes in %g s: is the ring connected and powered?", r->port.path,
-                     seconds);
+    return ethd__say(message, ETHD_E_DEVICE, "%s: nothing came in %g s: is the ring connected and powered?",
+                     r->port.path, seconds);
   return ethd__say(message, ETHD_E_DEVICE, "%s: %llu bytes but %llu frames in %g s: is its baud rate %u?", r->port.path,
                    (unsigned long long)bytes, (unsigned long long)d->counters.frames, seconds, r->port.baud);
 }

@@ -16,7 +16,7 @@
 static const struct {
   const char *sentence, *mend;
 } words[ETHD_SHORT_COUNT] = {
-    {"no real-time priority: every other program can delay the loop",
+    {"no real-time priority: the loop waits behind every other program",
      "put \"@realtime - rtprio 95\" into /etc/security/limits.d/ethd.conf, join the group realtime and log in "
      "again; or: setcap cap_sys_nice+ep PROGRAM"},
     {"memory isn't locked: a page fault may stall a tick",

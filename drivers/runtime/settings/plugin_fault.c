@@ -52,7 +52,7 @@ static void row_fault(const ethd_param *params, uint32_t i, char *what) {
 ethd_status ethd__table_fault(const ethd_param *params, uint32_t count, char what[ETHD_MESSAGE_MAX]) {
   if (count > ETHD_PARAMS_MAX)
     return ethd__say(what, ETHD_E_TABLE, "%u rows, at most %d are allowed", count, ETHD_PARAMS_MAX);
-  if (count && !params) return ethd__say(what, ETHD_E_TABLE, "NULL, but its count is %u rows", count);
+  if (count && !params) return ethd__say(what, ETHD_E_TABLE, "NULL, but %u rows are promised", count);
   for (uint32_t i = 0; i < count; i++) { /* up to the first row with which the table is refused */
     if (!ethd_params_check_table(params, i + 1, NULL)) continue;
     row_fault(params, i, what);
