@@ -32,4 +32,4 @@ total(x) = column("taps")
 below(k) = sum [j=1:k] (100.0*column(keys[j])/total(0))
 plot for [k=1:8] in using ((below(k) + (k > 1 ? below(k - 1) : 0))/2):"row":(k > 1 ? below(k - 1) : 0):(below(k)):(column("row") - 0.36):(column("row") + 0.36):ytic(strcol("transition").", ".strcol("speed")) \
   with boxxyerror lc rgb tints[k] fs solid 1 border lc rgb "#ffffff" notitle, \
-  for [k=1:8] keyentry with boxes lc rgb tints[k] fs solid 1 title (keys[k])
+  for [k=1:8] keyentry with boxes lc rgb tints[k] fs solid 1 title (keys[k] eq "ok" ? "valid" : keys[k])

@@ -38,7 +38,7 @@ peak = NaN; valley = NaN; t_peak = NaN; t_valley = NaN; turned = 0; v_rmin = NaN
 follow(x, at) = at < -1e-9 || turned == 2 ? 0 : turned == 0 ? \
   (peak != peak || x > peak ? (peak = x, t_peak = at) : x < peak - 0.1 ? (turned = 1, valley = x, t_valley = at) : 0) : \
   x < valley ? (valley = x, t_valley = at) : x > valley + 0.1 ? (turned = 2) : 0
-stats in using (follow(1e3*column("ring_m"), t(0)), 0) nooutput
+stats in using (follow(1e3*column("measured_m"), t(0)), 0) nooutput
 stats in using (touch == touch && t(0) > touch + 1e-9 && t(0) <= touch + 100 + 1e-9 && (v_rmin != v_rmin || column("v_ring_mps") < v_rmin) ? (v_rmin = column("v_ring_mps"), t_rmin = t(0)) : 0, 0) nooutput
 stats [*:*] in using (t(0) >= from && t(0) <= to ? 1e3*column("ring_m") : NaN) nooutput name "R"
 moved_any = 0
@@ -72,6 +72,7 @@ plot in using (t(0)):(1e3*column("hand_m")) with lines ls 3 title "hand's path",
      0 with lines ls 4 title "wall x_e", \
      in using (t(0)):(moved_any ? 1e3*column("offset_wall_m") : 0) with lines ls offset_style \
        title (moved_any ? "wall x_{/Symbol e}" : ""), \
+     in using (t(0)):(1e3*column("measured_m")) with lines lc rgb ring lw 1.2 dt (3,3) title "as measured", \
      in using (t(0)):(1e3*column("finger_m")) with lines ls 2 title "finger's pad", \
      in using (t(0)):(1e3*column("ring_m")) with lines ls 1 title "ring's front"
 unset object 1

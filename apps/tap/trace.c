@@ -5,8 +5,8 @@
 #include "text/csv.h"
 
 #define HEADER                                                                                          \
-  "t_s,since_wall_s,ring_m,finger_m,hand_m,offset_wall_m,v_ring_mps,v_finger_mps,state,beta,fe_N,fd_N," \
-  "pad_force_N,tau1_Nm,tau2_Nm"
+  "t_s,since_wall_s,ring_m,measured_m,finger_m,hand_m,offset_wall_m,v_ring_mps,v_finger_mps,state,beta," \
+  "fe_N,fd_N,pad_force_N,tau1_Nm,tau2_Nm"
 
 static double along(ethd_vec n, const double v[2]) { return n.x * v[0] + n.y * v[1]; }
 
@@ -21,6 +21,7 @@ static void write_row(ethd_csv_out *csv, const ethd__view *view, double meeting,
   ethd_csv_number(csv, truth->t);
   ethd_csv_number(csv, truth->t - meeting);
   ethd_csv_number(csv, depth(view, truth->ring, view->ring_radius));
+  ethd_csv_number(csv, depth(view, view->rule.side ? truth->motor : truth->ring, view->ring_radius));
   ethd_csv_number(csv, depth(view, truth->finger, view->finger_radius));
   ethd_csv_number(csv, depth(view, truth->hand, view->finger_radius));
   ethd_csv_number(csv, trace->eps != 0 ? trace->eps : NAN);

@@ -30,7 +30,7 @@ typedef struct ethd_arm {
    is adj(J) / det(J). Nearer to the singularity it is J^T (J J^T + lambda^2 I)^-1, damped least squares,
    with lambda^2 = lambda_0^2 (1 - w / ETHD_ARM_SINGULAR)^2 (Nakamura and Hanafusa 1986), which is
    continuous, and lambda_0 = ETHD_ARM_SINGULAR L1 L2 / |J|, about the smaller singular value there: the
-   gain of the inverse is at most 1.3 times what it is where the damping begins. */
+   gain of the inverse is at most 1.3 times its value where the damping begins. */
 #define ETHD_ARM_SINGULAR 0.02
 
 /* Where the ring is, and how it moves with the joints. Row-major J: dx/dq1, dx/dq2, dy/dq1, dy/dq2. */
@@ -67,7 +67,7 @@ typedef struct ethd_dynamics {
   double delay;    /* s from the joint sample to the torque */
 } ethd_dynamics;
 
-/* Returns dynamics of which nothing is known. [any] */
+/* Returns dynamics with all numbers unknown. [any] */
 ETHD_API ethd_dynamics ethd_dynamics_unknown(void);
 
 /* Returns `first`, with each number that it doesn't know taken from `second`. [any] */

@@ -1,7 +1,7 @@
 /* The latest value of a slow feed: one thread puts, another takes, neither ever waits. Links from libethd.
 
    A triple buffer: the writer fills a slot of its own and exchanges it for the middle one, the reader
-   exchanges the middle one for its own. What is taken is always whole, and always the newest. */
+   exchanges the middle one for its own. The reader always gets a complete value, and the newest. */
 #ifndef ETHD_CELL_H
 #define ETHD_CELL_H
 

@@ -6,7 +6,7 @@
      any time:   ethd_control_post(control, &setup, &error);    taken whole, between two ticks
                  ethd_control_poll(control, &event);
 
-   Per tick: estimators (where ring and finger are) -> scene (what is near) -> transition (who rules) ->
+   Per tick: estimators (where ring and finger are) -> scene (what is near) -> transition (shares of tracking and wall) ->
    contact (force of what is touched) -> tracking (torque that follows the finger) -> guard. */
 #ifndef ETHD_CONTROL_H
 #define ETHD_CONTROL_H
@@ -84,7 +84,7 @@ ETHD_API void ethd_setup_fill(ethd_setup *setup, const ethd_sizes *sizes);
 /* Checks a program's sizes against the library's: ETHD_E_SIZE as above. [any] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_sizes_check(const ethd_sizes *sizes, ethd_error *error);
 
-/* Choose a law or a method and set its parameters to their defaults. What isn't one (NULL, a number beyond the methods,
+/* Choose a law or a method and set its parameters to their defaults. An invalid one (NULL, a number beyond the methods,
    a law with too many parameters) is left for ethd_setup_check to refuse; a refused setup is left alone. [any] */
 ETHD_API void ethd_setup_tracking(ethd_setup *setup, const ethd_tracking_law *law);
 ETHD_API void ethd_setup_contact(ethd_setup *setup, const ethd_contact_law *law);

@@ -8,8 +8,8 @@
    Any function but open and close may be NULL: the driver then has nothing to do, to read or to limit there. But a
    driver that has write must have safe too, because what applies a torque must be able to remove it.
 
-   One device may consist of several drivers (a servo, its encoders, a proximity ring): each adds what it
-   knows to the sense, and takes from the command what is its own. They are read and written in the order of their
+   One device may consist of several drivers (a servo, its encoders, a proximity ring): each adds its
+   values to the sense, and reads its part of the command. They are read and written in the order of their
    names: where two give the same number, the later one's counts (servo, counter: the counter's angles). Those that have
    write start last and stop first, since a drive that is enabled mustn't wait for another driver.
 
@@ -76,7 +76,7 @@ struct ethd_driver {
   const ethd_param *params; /* its settings that are numbers or one of several words; may be NULL */
   uint32_t param_count;
   const char *const *keys; /* its other settings, ended by NULL; may be NULL */
-  /* On failure message holds one line: file:line, what was found, what is allowed; if it is left empty, the status's
+  /* On failure message holds one line: file:line, the value found, the values allowed; if it is left empty, the status's
      sentence takes its place. What open leaves in *device is closed, also after a failure, unless it is NULL. */
   ethd_status (*open)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
   ethd_status (*start)(void *device);

@@ -194,7 +194,7 @@ ETHD_API void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *
    rest, with standard deviations of 1 m/s and 10 m/s^2. ETHD_STATUS_STALE: the reading is counted but not used, because
    it is not newer than the last used one (late), not finite, or over `gate` standard deviations from where it was
    expected, by the innovation of both axes together against sqrt(P_xx + noise^2) (gated). The ETHD_FILTER_GATED_MAX-th
-   gated reading in a row starts the filter anew, since then the filter is wrong, not the readings. [rt] */
+   gated reading in a row starts the filter again, since then the filter is wrong, not the readings. [rt] */
 ETHD_API ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x,
                                         double age) ETHD_RT;
 

@@ -1,10 +1,10 @@
-/* The fault table: what may go wrong, how soon it is noticed, what is done. Counters, events, recordings,
+/* The fault table: faults, the time until each is noticed, the reactions. Counters, events, recordings,
    the summary of a run and the manual's page come from these rows. Links from libethd.
 
    Reactions, from mild to hard:
      COUNTED  go on; it is counted
      DEGRADE  go on with less: without a sensor, by prediction, with less torque
-     STOP     brake the ring until it stands still, or let it go (ethd/guard.h); then do as ZERO does
+     STOP     brake the ring until it stands still, or remove its torque (ethd/guard.h); then do as ZERO does
      ZERO     no torque, the device is disabled; latched until acknowledged
    Zero torque is a safe state because the arm is counterweighted. A row has two reactions. The first is due as soon as
    the row is seen, the second when it has become grave: often, long or twice, as its sentence says. A row that has only

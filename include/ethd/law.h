@@ -6,7 +6,7 @@
    The controller composes them:  tau = beta tau_t + J^T sum (share F_e - damping v + feed) n.
 
    A law is asked about surfaces that are near. A transition law that looks ahead (`range`) is asked about farther ones
-   too and is given what the device can do (`facts`), so that it can act in time.
+   too and gets the device's abilities (`facts`), so that it can act in time.
 
    A law is stateless code: numbers in, numbers out. It never allocates, never blocks, and keeps nothing of its own.
    Its state is a block of numbers (no pointers) that is zeroed before reset, copied, recorded, hashed.
@@ -93,12 +93,12 @@ typedef struct ethd_tracking_law {
    ETHD_TRANSPARENT. Only contacts that count have a law asked, a state block and a place in the trace, and at
    most ETHD_CONTACTS_MAX do, the deepest. A contact that stops counting is forgotten. */
 
-/* What the device and its estimators can do along a contact's n, for a law that looks ahead. NaN: not known. The
-   controller works it out from what the device's driver says (ethd_dynamics), from the limits and the arm. */
+/* Abilities of the device and its estimators along a contact's n, for a law that looks ahead. NaN: not known. The
+   controller calculates it from the driver's data (ethd_dynamics), the limits and the arm. */
 typedef struct ethd_facts {
   double mass;          /* kg: effective mass of the ring along n */
   double force;         /* N: the largest force against n that the guard lets through now (INFINITY: no limit is set) */
-  double applied;       /* N along n: what the torque of the last tick amounts to, after the guard */
+  double applied;       /* N along n: force of the last tick's torque, after the guard */
   double friction;      /* N: Coulomb friction along n */
   double viscous;       /* Ns/m */
   double delay;         /* s from the joint sample to the force */
@@ -177,7 +177,7 @@ typedef struct ethd_transition_law {
      is less than d_beta or isn't finite counts as d_beta. Scenes are searched this far, so ask for no more than you
      need. ethd_setup_range asks with an infinite speed. [rt] */
   double (*range)(const double *p, double speed) ETHD_RT;
-  /* Takes over a live contact at a swap of laws, into a state block that has been reset. NULL: the contact begins anew.
+  /* Takes over a live contact at a swap of laws, into a state block that has been reset. NULL: the contact starts again.
      [rt] */
   void (*adopt)(const double *p, void *state, const ethd_past *past) ETHD_RT;
   const ethd_gains *gains; /* as of tracking */

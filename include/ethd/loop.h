@@ -68,7 +68,7 @@ ETHD_API int64_t ethd_histogram_last(uint32_t bin) ETHD_RT;
    never over max; 0 if there are none. [any, rt-safe] */
 ETHD_API int64_t ethd_histogram_at(const ethd_histogram *histogram, double share) ETHD_RT;
 
-/* ---- what the machine refuses ---- */
+/* ---- shortfalls of the machine ---- */
 
 enum {
   ETHD_SHORT_FIFO = 1,        /* no SCHED_FIFO: the loop runs at ordinary priority */
@@ -80,7 +80,7 @@ enum {
 };
 #define ETHD_SHORT_COUNT 6
 
-/* Say in one sentence each what is short and what mends it; `bit` is one of the above. [any] */
+/* Give the shortfall and its remedy, a sentence each; `bit` is one of the above. [any] */
 ETHD_API const char *ethd_shortfall_sentence(int32_t bit);
 ETHD_API const char *ethd_shortfall_mend(int32_t bit);
 

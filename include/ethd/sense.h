@@ -1,5 +1,5 @@
-/* One tick as seen from outside: what a device measured (sense), what it is commanded (command), and all that was
-   worked out in between (trace). Links from libethd; a driver needs no more of the controller than this.
+/* One tick as seen from outside: a device's measurements (sense), its command, and all intermediate
+   results (trace). Links from libethd; a driver needs no more of the controller than this.
 
      device --- sense ---> ethd_control_step --- command ---> device
                                   |

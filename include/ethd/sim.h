@@ -61,8 +61,8 @@ typedef struct ethd_plant {
   double band_low, band_high;                 /* m/s: valid within 0.2 +- band_low, 0.4 +- band_high */
   /* of the sensors that a plant file doesn't describe; ethd_plant_finger fills them */
   int32_t zones;          /* light barriers, 8 to 16 */
-  double zone_reach;      /* m: a barrier is lit while the finger is nearer */
-  double zone_hysteresis; /* share by which it must be further to go dark */
+  double zone_reach;      /* m: a barrier is on while the finger is nearer */
+  double zone_hysteresis; /* share of zone_reach by which it switches off further out */
   double nail_angle;      /* rad: toward the sensor that sees the plate */
   double nail_step;       /* m: one step of its converter */
 } ethd_plant;

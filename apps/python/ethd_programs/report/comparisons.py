@@ -29,16 +29,16 @@ def table1(r: Report) -> None:
         return
     r.page.heading("table1", "Table 1 of the paper")
     if not r.measured or r.beside:
-        r.page.put("<p>The simulated device and finger were <b>fitted to the four means of this table</b>, not measured: that they agree is no "
-                   "evidence.</p>\n")
+        r.page.put("<p>The simulated device and finger were <b>fitted to the four means of this table</b>, not measured: agreement proves "
+                   "nothing.</p>\n")
     if r.folder.facts["valid_by_finger"]:
         r.page.put("<p>Taps of this study are valid by the hand's speed, those of the paper by the ring's: they aren't the same taps.</p>\n")
-    r.page.put("<p>The last columns compare the people of %s with the paper's nine taps: the mean of people's means less the paper's (Welch's t "
+    r.page.put("<p>The last columns compare the people of %s with the paper's nine taps: the mean of people's means minus the paper's (Welch's t "
                "test), and the standard deviation of all taps over the paper's (F test, as if all taps were independent). A small p speaks "
                "against agreement; a large one shows none.</p>\n", r.judged_name)
     beside = ("beside", "n") if r.beside else ()
     r.page.table("Table 1: mean (sample standard deviation) of all valid taps, n; then the mean of people's means",
-                 ("offset", "paper, n = 9", "this study", "n", *beside, "people's mean, 95 %", "less the paper's, 95 %", "p", "sd / paper's", "p"), 1)
+                 ("offset", "paper, n = 9", "this study", "n", *beside, "people's mean, 95 %", "minus the paper's, 95 %", "p", "sd / paper's", "p"), 1)
     rows: List[List[Text]] = []
     for m in paper.means(r.judged):
         q, study, other, judged = m.quantity, _of_offset(r.taps, m), _of_offset(r.beside, m), _of_offset(r.judged, m)
@@ -68,7 +68,9 @@ def _bounds(part: paper.Part) -> str:
 def _print_part(r: Report, part: paper.Part) -> None:
     both = part.at_low + part.at_high - part.people
     n = f"{part.people} (low {part.at_low}, high {part.at_high}, both {both})" if part.at_low else str(part.people)
-    r.page.row(part.what, _bounds(part), part.test or "-", n, number_text(part.mean, 3), interval_text(part.interval.low, part.interval.high, 3),
+    most = 100.0 if part.unit == "%" else math.inf  # a t interval of shares knows no bound
+    low, high = max(part.interval.low, -most), min(part.interval.high, most)
+    r.page.row(part.what, _bounds(part), part.test or "-", n, number_text(part.mean, 3), interval_text(low, high, 3),
                number_text(part.d_z, 2), p_text(part.p))
 
 
@@ -92,18 +94,18 @@ def claims(r: Report) -> None:
     people, m = len(r.judged.people), r.margins
     found = paper.claims(r.judged, m, r.seed)
     r.page.heading("claims", "The paper's sentences")
-    r.page.put("<p>Judged by the taps of %s, %d participant%s. A sentence is shown when all its parts are: its p is the largest of theirs, and is "
-               "corrected by Holm for all the sentences of this table, the family. The contrary is shown when that of one part is: its p is the "
-               "smallest of theirs times their number, corrected by Holm in the same way. &quot;Not shown&quot; says neither. "
+    r.page.put("<p>Judged by the taps of %s, %d participant%s. A sentence is shown only if each of its parts is: its p is the largest p of the parts, "
+               "corrected by Holm for all sentences of this table. The contrary of a sentence is shown if the contrary of one part is: its p is "
+               "the smallest p of the parts times their number, corrected by Holm in the same way. &quot;Not shown&quot; says neither. "
                "Smooth and offset are alike when their difference lies within &#177;%g mm (d_max) and &#177;%g and &#177;%g m/s (v_of, v_rmin): "
                "margins of the study file.</p>\n", r.judged_name, people, plural(people), m.d_max, m.v_of, m.v_rmin)
     r.page.put("<p>Tests: <em>sign flip</em>, the exact permutation test of people's contrasts; <em>TOST</em>, two one-sided t tests; "
                "<em>bootstrap</em> of people and their taps, for the threshold; <em>overlap</em>, where fewer than six people have a valid tap in "
                "all four cells: the strategies' differences of all people who have one at high speed are compared with those of all who have one "
-               "at low speed, by a t test that takes into account who is in both (Derrick and others 2017). It assumes that who lacks a valid tap "
-               "doesn't depend on the difference.</p>\n"
-               "<p>The threshold is the voluntary speed of the hand that parts the taps which touch early from the others with the fewest mistakes, "
-               "under all strategies together; a hand is seldom as fast as it was asked to be. Limits of braking time and offset are judged by "
+               "at low speed, by a t test that takes into account who is in both (Derrick and others 2017). It assumes that missing taps are "
+               "unrelated to the difference.</p>\n"
+               "<p>The threshold is the hand's voluntary speed that best separates the taps that touch early from the others, "
+               "of all strategies together; a hand is seldom as fast as it was asked to be. Limits of braking time and offset are judged by "
                "the share of a person's valid taps that keep them. The share of valid taps is the mean of the people's shares; the table of valid taps pools all taps, so that those who needed many weigh more there.</p>\n")
     r.page.put('<p class="note">%s</p>\n', "These participants are simulated: a p value says how sure the simulation's own answer is. More "
                "participants cost nothing and make any p small; none of them is evidence about people." if r.beside else r.caveat)
@@ -128,7 +130,7 @@ def claims(r: Report) -> None:
 
 @dataclass
 class Within:
-    """Two strategies at one speed, or their difference at one speed less that at another."""
+    """Two strategies at one speed, or their difference at one speed minus that at another."""
 
     quantity: Quantity
     a: Cell  #: b - a

@@ -62,7 +62,7 @@ def _write_boxes(r: Report, taps: Taps, prefix: str) -> None:
 
 def _draw_boxes(r: Report, taps: Taps, prefix: str, name: str, metrics: str, heading: str, caption: str) -> None:
     people = len(taps.people)
-    whose = ("; colours and dashed lines (medians): participants" if people <= _COLOURS
+    whose = ("; colours, dashed lines (medians): participants" if people <= _COLOURS
              else "; dashed lines: participants' medians" if people <= _LINES else "")
     measured = "Measured." if r.measured and not prefix else "Simulated, not measured."
     r.draw("report-boxes.gp", f"{prefix}{name}.png", caption, {
@@ -80,8 +80,8 @@ def _pictures(r: Report, taps: Taps, prefix: str, whose: str) -> None:
                 "cell every second, third and so on is drawn.")
     if any(len(c.values(QUANTITIES["delta_s"])) for c in taps.cells):
         _draw_boxes(r, taps, prefix, "braking", "delta_s eps", f"Braking: {whose}",
-                    f"Time of braking and offset of the wall, {whose}: what Table 1 sums up. Where the dots make two heaps, the "
-                    "mean between them describes no tap. A strategy that brakes before the wall has no time of braking.")
+                    f"Time of braking and offset of the wall, {whose}: what Table 1 sums up. If the dots form two groups, no tap "
+                    "is near the mean. A strategy that brakes before the wall has no time of braking.")
 
 
 def boxes(r: Report) -> None:
@@ -161,14 +161,14 @@ def validity(r: Report) -> None:
     r.page.put("<p>This study's taps are valid by the hand's own speed and by when the finger touched: no strategy can change by which "
                "taps it is judged.</p>\n" if by_finger else
                "<p>This study's taps are valid, as the paper's, by the speed at which the <em>ring</em> meets the wall. A strategy that "
-               "slows the ring down beforehand changes that speed, and so by which taps it is judged: see v_rvo of every tap.</p>\n")
+               "slows the ring down beforehand changes that speed, and therefore which of its taps are valid: see v_rvo of every tap.</p>\n")
     rows: List[List[Text]] = []
     if any("" in column for cell in r.taps.cells for column in (cell.by_ring, cell.by_finger)):
         r.page.put("<p>These taps come from an earlier version, which didn't judge them by the other rule.</p>\n")
     else:
         r.page.put("<p>By the ring, a tap counts when the ring meets the wall at the speed asked for, before the finger touches it. By hand "
                    "and finger, it counts when the hand's own path crosses the wall at that speed and the finger doesn't touch before the "
-                   "ring is behind the wall, or within %g mm of it and slower than %g m/s. Either way the finger has to press for a while, "
+                   "ring is behind the wall, or the ring is within %g mm of the wall and slower than %g m/s. Either way the finger has to press for a while, "
                    "once.</p>\n", _NEAR, _STILL)
         r.page.table("Medians of the taps that each rule lets count",
                      ("cell", "valid by", "taps", "by both", "v_rvo m/s", "v_hand m/s", "v_of m/s", "d_max mm", "v_rmin m/s"), 2)

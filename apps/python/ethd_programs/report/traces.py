@@ -15,9 +15,9 @@ from ethd_programs.report.study import Ticks
 from ethd_programs.report.taps import QUANTITIES, Cell
 
 _TICK = ("q", "state", "beta", "fe", "fd", "eps", "d_re", "tau_raw", "tau")
-_TRUTH = ("t", "ring", "ring_v", "motor_v", "finger", "finger_v", "hand", "pad_force")
-_HEADER = ("t_s,since_wall_s,ring_m,finger_m,hand_m,offset_wall_m,v_ring_mps,v_finger_mps,state,beta,fe_N,fd_N,pad_force_N,"
-           "tau1_Nm,tau2_Nm")
+_TRUTH = ("t", "ring", "ring_v", "motor", "motor_v", "finger", "finger_v", "hand", "pad_force")
+_HEADER = ("t_s,since_wall_s,ring_m,measured_m,finger_m,hand_m,offset_wall_m,v_ring_mps,v_finger_mps,state,beta,fe_N,fd_N,"
+           "pad_force_N,tau1_Nm,tau2_Nm")
 _SHOWN = 0.09  # s after the ring meets the wall: what tap.gp shows
 _SINGULAR = 0.02  # below it, as a share, the inverse of the Jacobian is damped (include/ethd/arm.h)
 
@@ -63,7 +63,7 @@ def forces(r: Report) -> None:
     r.page.put("<p>The laws ask for a torque; the guard lets through what the limits of device and configuration allow. Only the second reaches "
                "the motors, and what a finger feels. The largest of each tap, in Nm of a joint and as the force at the ring that these torques "
                "make (a device's friction and inertia not counted). The largest force that the wall asks for, in the table of all figures, is "
-               "the law's wish too.</p>\n")
+               "also what the law asks for.</p>\n")
     r.page.table("Valid recorded test taps: median over taps (largest)",
                  ("cell", "recorded taps", "asked for, N", "let through, N", "asked for, Nm", "let through, Nm"), 1)
     rows: List[List[Text]] = []
@@ -118,16 +118,17 @@ def _meeting(r: Report, tick: Ticks, truth: Ticks, along: NDArray[np.float64]) -
 
 def _write(r: Report, name: str, tick: Ticks, truth: Ticks, finger_radius: float) -> str:
     """Writes a tap's table; depths are those of ring, finger and hand behind the wall. Returns a sentence that says how far
-    the ring went into the wall within the picture, and against which force; "" if it met no wall."""
+    the ring went into the wall within the picture, and which forces acted; "" if it met no wall."""
     f = r.folder.facts
     n = np.array([f["normal_x"], f["normal_y"]])
     meeting = _meeting(r, tick, truth, n)
-    ring = truth["ring"] @ n + f["ring_radius_m"] - f["wall_m"]
+    side = "motor" if f["speed_of_motor_side"] else "ring"
+    ring, measured = (truth[which] @ n + f["ring_radius_m"] - f["wall_m"] for which in ("ring", side))
     finger, hand = (truth[who] @ n + finger_radius - f["wall_m"] for who in ("finger", "hand"))
     since = truth["t"] - (truth["t"][meeting] if meeting < len(tick) else NAN)
     offset = np.where(tick["eps"] != 0, tick["eps"], NAN)
-    speed = truth["motor_v" if f["speed_of_motor_side"] else "ring_v"] @ n
-    columns = (truth["t"], since, ring, finger, hand, offset, speed, truth["finger_v"] @ n, tick["state"], tick["beta"], tick["fe"] @ n,
+    speed = truth[side + "_v"] @ n
+    columns = (truth["t"], since, ring, measured, finger, hand, offset, speed, truth["finger_v"] @ n, tick["state"], tick["beta"], tick["fe"] @ n,
                tick["fd"] @ n, truth["pad_force"], tick["tau"][:, 0], tick["tau"][:, 1])
     r.output.table(name, _HEADER, zip(*(c.tolist() for c in columns)))
     if meeting == len(tick):
@@ -135,8 +136,8 @@ def _write(r: Report, name: str, tick: Ticks, truth: Ticks, finger_radius: float
     shown = slice(0, meeting + int(_SHOWN / f["period_s"]))
     asked, let, _, _ = _strongest(r, tick[shown])
     deepest = max(0.0, float(ring[shown][meeting:].max()))
-    return (f" Within the picture the ring goes {1e3 * deepest:.1f} mm into the wall that is asked for: against the hand the laws ask for up "
-            f"to {asked:.0f} N at the ring, and the guard lets through at most {let:.1f} N.")
+    return (f" The ring goes {1e3 * deepest:.1f} mm into the wall that is asked for. The laws ask for up to {asked:.0f} N at the ring, for "
+            f"braking and wall together; the limits let through at most {let:.1f} N.")
 
 
 #: The paper's figures of single taps, by strategy and speed.
@@ -145,13 +146,14 @@ _FIGURES = {("smooth", "low"): 9, ("offset", "low"): 10, ("smooth", "high"): 11,
 
 def traces(r: Report) -> None:
     r.page.heading("traces", "Traces of single taps")
-    r.page.put("<p>Ring and finger go on into the virtual wall after the touch; each caption says how far. That is no error of the drawing: the "
-               "hand goes on pushing, and the ring holds against it only with what the limits of the device let through, while the spring of the "
-               "wall asks for more. d<sub>max</sub> is the first rebound alone, from the ring's first peak to the valley after it; v<sub>r min</sub> "
-               "is its smallest speed in the 0.1 s after the touch.</p>\n"
+    r.page.put("<p>The ring goes into the virtual wall; each caption says how far. The drawing is right: a ring that comes at this speed can't stop "
+               "at once, the limits of the device cap its force, and after the touch the hand keeps pushing. d<sub>max</sub> is the first "
+               "rebound alone, from the ring's first peak to the valley after it, and often begins before the finger touches; v<sub>r min</sub> is "
+               "the ring's smallest (most negative) speed in the 0.1 s after the touch. d<sub>max</sub> and the ring's speed are of the side that "
+               "the study measures: the encoders', where the drive's transmission gives way.</p>\n"
                "<p>In the pictures n points into the wall; x<sub>e</sub> is the wall that is asked for, x<sub>&epsilon;</sub> the one that is "
                "rendered once a strategy has braked behind it. A strategy is transparent while the ring follows the finger, brakes, and then "
-               "renders the virtual wall (vo); &beta; is the share of the following that is left.</p>\n")
+               "renders the virtual wall (vo); &beta; says how strongly the ring still follows the finger (1: fully).</p>\n")
     drawn: List[Cell] = []
     for cell in r.taps.cells:
         chosen = _choose(r, cell)
@@ -161,7 +163,7 @@ def traces(r: Report) -> None:
         recording = _recording(r, tap)
         assert recording
         depth = _write(r, f"{table}.csv", *_read(r, recording), float(cell.figures["finger_radius_m"][chosen]))
-        which = "" if r.tap else ", of the valid ones that are recorded the one nearest to their means"
+        which = "" if r.tap else ", the recorded valid tap that is closest to the mean"
         number = _FIGURES.get((cell.law, cell.speed.word))
         like = f"As figure {number} of the paper, a tap of one participant" if number else "In the manner of figures 9 to 12 of the paper"
         r.draw("tap.gp", f"{table}.png", f"{like}: {cell.label}, tap {tap}{which}.{depth}",
@@ -188,7 +190,7 @@ def encounter(r: Report) -> None:
             laws.append(law)
     if laws:
         r.draw("report-states.gp", "encounter.png",
-               "As figure 6 of the paper, which shows a typical encounter under VO-B, with \u03b2, the active state and the offset \u03b5 of the wall: "
+               "As figure 6 of the paper, which shows a typical encounter under VO-B (vo: the virtual object is rendered), with \u03b2, the active state and the offset \u03b5 of the wall; here under each strategy: "
                "approach at 0.4 m/s, touch, 0.12 s of pressing, retreat, until the ring follows the finger freely again. Simulated for this picture with the study's configuration and plant, no tap of the study, whose recordings "
                "end soon after the touch.",
                {"in": " ".join(f"encounter-{law}.csv" for law in laws), "titles": " ".join(laws), "from": "-60",

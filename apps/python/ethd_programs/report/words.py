@@ -30,8 +30,8 @@ def _numbers(r: Report) -> None:
     checked = f", {t.accepted} accepted by the experimenter, {t.rejected} rejected and left out" if t.accepted + t.rejected else ""
     r.page.put("<li><b>What was measured:</b> taps of a finger on a virtual wall, which a ring around the finger renders. %d test tap%s, %d of "
                "them valid%s, in %d cell%s, each a strategy at a speed (%s); %d training tap%s %s left out. Of each tap: the ring's speed as it "
-               "meets the wall (v_rvo) and as the finger touches it (v_of), how far it rebounds first (d_max), its smallest speed after the touch "
-               "(v_rmin); of strategies that brake how long (Delta_s) and how far (eps) they do. &quot;The paper&quot; is <em>A New Control "
+               "meets the wall (v_rvo) and as the finger touches it (v_of), how far it rebounds first (d_max), its smallest (most negative) speed after the "
+               "touch (v_rmin); for strategies that brake: the braking time (Delta_s) and the offset of the wall (eps). &quot;The paper&quot; is <em>A New Control "
                "Strategy for the Improvement of Contact Rendering with Encounter-type Haptic Displays</em>.</li>\n",
                t.count, plural(t.count), t.valid, checked, len(t.cells), plural(len(t.cells)), "; ".join(c.label for c in t.cells),
                t.training, plural(t.training), _is(t.training))
@@ -169,7 +169,7 @@ _METHODS = (
 def methods(r: Report) -> None:
     r.page.heading("methods", "Methods")
     r.page.put("<ul>\n" + "".join(f"<li>{words}</li>\n" for words in _METHODS))
-    r.page.put("<li>Whatever is drawn is drawn under seed %d: %d bootstrap samples, fewer (%d at least) of more than %d taps.</li>\n</ul>\n",
+    r.page.put("<li>All random sampling uses seed %d: %d bootstrap samples, fewer (%d at least) of more than %d taps.</li>\n</ul>\n",
                r.seed, DRAWS, FEW_DRAWS, 10000)
 
 
