@@ -25,7 +25,7 @@ case ${SAN:-} in
   *thread*) ;; # its threads don't fit into the loop's stack
   *)
     ends hangs 20 "ethd-run: the law broken doesn't return" "$BUILD/bin/ethd-run" --config "$folder/hangs.ini" --record "$folder/hung" --duration 30
-    grep -q "fault,\"the law broken doesn't return" "$folder/hung/events.csv" || fail "hangs: events.csv: $(cat "$folder/hung/events.csv")"
+    grep -q "fault,the law broken doesn't return" "$folder/hung/events.csv" || fail "hangs: events.csv: $(cat "$folder/hung/events.csv")"
     grep -q "1 x the loop's thread doesn't run" "$folder/out" || fail "hangs: no row 3 in: $(cat "$folder/out")"
     "$BUILD/bin/ethd-replay" --help >/dev/null || fail "--help"
     ;;

@@ -81,7 +81,7 @@ drawn() {
 }
 drawn "$here/report" "$here"
 for words in 'Simulated, not measured' 'No significance is claimed' 'smallest two-sided p is 0.5' 'Nobody has answered' 'early-contact' \
-  '2 participants: <b>simulated, no person</b>' 'under seed 1: 2000 bootstrap samples' 'sign-flip' 'fitted to the four means' \
+  '2 participants: <b>simulated, no person</b>' 'uses seed 1: 2000 bootstrap samples' 'sign-flip' 'fitted to the four means' \
   'none of them is evidence about people' 'VO-A: tracking fades' 'medians have no 95 % interval' 'margins of the study file' '&#177;0.5 mm (d_max) and &#177;0.02 and' \
   '<b>The task:</b> to tap once, at a speed that was asked for (low: 0.2 &#177; 0.017 m/s; high: 0.4 &#177; 0.034 m/s)' \
   "$(awk -F, 'NR > 1 && $3 == "test" && $9 { if (!n[$1 $5 $6]++) c[$1]++ } END { for (p in c) w += c[p] == 4; print "with a valid tap in every cell: " w + 0 }' "$here/taps.csv")" 'lmer(d_max_mm ~ strategy \* speed' 'second reaches the motors' 'mm into the wall that is asked for\. .* the limits let through at most 5\.[0-9] N'; do
@@ -104,7 +104,7 @@ sys.exit(f"{links - names} of {len(links)}" if links - names or len(links) < 10 
 END
 cp "$here/report/encounter-offset.csv" "$folder"
 gnuplot -e "svg=1; in='$folder/encounter-offset.csv'; out='$folder/encounter.svg'" apps/plot/report-states.gp 2>"$folder/err" || fail "$(cat "$folder/err")"
-grep -q "> $(awk -F, 'NR > 1 && $6 { e = $6 } END { printf "%.2f", 1e3 * e }' "$here/report/encounter-offset.csv") mm<" "$folder/encounter.svg" || fail "an encounter without eps"
+grep -q "> $(awk -F, 'NR > 1 && $7 { e = $7 } END { printf "%.2f", 1e3 * e }' "$here/report/encounter-offset.csv") mm<" "$folder/encounter.svg" || fail "an encounter without eps"
 
 # The table agrees with the taps.
 awk -F, 'NR > 1 && $3 == "test" && $5 == "offset" && $6 == "low" && $9 { s += $11; n++ } END { printf "%d %.12g\n", n, s / n }' "$here/taps.csv" >"$folder/a"
@@ -116,7 +116,7 @@ tap=$(awk -F, '$3 == "test" && $5 == "offset" { printf "%s-%02d-%03d\n", $1, $2,
 "$study" "$BUILD/share/ethd/crowd.study" --simulate 60 --out "$folder/crowd" >/dev/null && "$study" --merge "$folder/crowd" >/dev/null || fail "the crowd"
 drawn "$folder/other" "$here" --tap "$tap" --out "$folder/other" --beside "$folder/crowd" --seed 7
 grep -q "tap $tap\." "$folder/other/report.html" || fail "the page doesn't name the tap"
-grep -q 'under seed 7' "$folder/other/report.html" || fail "the page doesn't state the seed"
+grep -q 'uses seed 7' "$folder/other/report.html" || fail "the page doesn't state the seed"
 [ "$(ls "$folder"/other/trace-*.png | wc -l)" = 1 ] || fail "other taps than the chosen one are drawn"
 
 # Answers, made up here for the test alone.

@@ -4,7 +4,7 @@
 
 #include "text/csv.h"
 
-#define HEADER                                                                                          \
+#define HEADER                                                                                           \
   "t_s,since_wall_s,ring_m,measured_m,finger_m,hand_m,offset_wall_m,v_ring_mps,v_finger_mps,state,beta," \
   "fe_N,fd_N,pad_force_N,tau1_Nm,tau2_Nm"
 

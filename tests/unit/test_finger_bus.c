@@ -176,12 +176,12 @@ TEST(test_refused) {
     const ethd_driver *driver;
     const char *key, *value, *says;
   } rows[] = {
-      {&ethd_driver_zones, NULL, NULL, "x.ini: device.port is missing: the barriers' line"},
+      {&ethd_driver_zones, NULL, NULL, "x.ini: device.port is missing: the barriers' serial port"},
       {&ethd_driver_zones, "zones", "7", "x.ini:3: device.zones: found \"7\", a whole number from 8 to 16 is allowed"},
       {&ethd_driver_zones, "zones", "8.5",
        "x.ini:3: device.zones: found \"8.5\", a whole number from 8 to 16 is allowed"},
       {&ethd_driver_zones, "port", "nowhere", "nowhere: No such file"},
-      {&ethd_driver_nail, NULL, NULL, "x.ini: device.port is missing: the sensor's line"},
+      {&ethd_driver_nail, NULL, NULL, "x.ini: device.port is missing: the sensor's serial port"},
       {&ethd_driver_nail, "angle", "0", "x.ini: device.calibration is missing"},
       {&ethd_driver_nail, "calibration", "nowhere.ini", "nowhere.ini: No such file"},
   };

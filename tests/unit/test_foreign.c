@@ -128,6 +128,7 @@ TEST(test_to_the_byte) {
     law.law.check = NULL;
     law.law.reset = cases[i].reset;
     law.step = cases[i].step;
+    law.gains = NULL;
     rig r;
     rig_open(&r, RIG_WALL);
     ethd_setup_tracking(&r.setup, &law);

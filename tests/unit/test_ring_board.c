@@ -209,7 +209,7 @@ START_TEST(test_speed) {
   boards_start(&b, NULL);
   show(&b, NULL);
   ck_assert_int_eq(open_driver(&b, "400000", &device), ETHD_E_DEVICE);
-  ck_assert_msg(strstr(message, "is 400000 its baud?") != NULL, "%s", message);
+  ck_assert_msg(strstr(message, "is its baud rate 400000?") != NULL, "%s", message);
   boards_end(&b);
 }
 END_TEST
