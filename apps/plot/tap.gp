@@ -65,14 +65,14 @@ set label 3 "virtual wall" at graph 0.012, first (top - 0.07*(top - bottom)) tex
 if (turned > 0) {
   set arrow 3 from t_valley,peak to t_valley,valley heads size 2,90 front lc rgb ring lw 1.6
   set arrow 4 from t_peak,peak to t_valley,peak nohead front lc rgb ring lw 1.2 dt (2,3)
-  set label 6 sprintf("d_{max} %.2f mm", peak - valley) at screen 0.85, graph 0.6 textcolor rgb ring font "Sans,13"
+  set label 6 sprintf("d_{max} %.2f mm", peak - valley) at screen 0.85, graph 0.5 textcolor rgb ring font "Sans,13"
 }
 offset_style = moved_any ? 5 : 4 # where the wall didn't move, its line once more: a curve without a point is warned of
 plot in using (t(0)):(1e3*column("hand_m")) with lines ls 3 title "hand's path", \
      0 with lines ls 4 title "wall x_e", \
      in using (t(0)):(moved_any ? 1e3*column("offset_wall_m") : 0) with lines ls offset_style \
        title (moved_any ? "wall x_{/Symbol e}" : ""), \
-     in using (t(0)):(1e3*column("measured_m")) with lines lc rgb ring lw 1.2 dt (3,3) title "as measured", \
+     in using (t(0)):(1e3*column("measured_m")) with lines lc rgb ring lw 1.2 dt (3,3) title "measured", \
      in using (t(0)):(1e3*column("finger_m")) with lines ls 2 title "finger's pad", \
      in using (t(0)):(1e3*column("ring_m")) with lines ls 1 title "ring's front"
 unset object 1
