@@ -25,13 +25,14 @@ static void rest(long ns) {
 /* An acknowledged device was enabled shortly before the tap enables it again, and where the recorder is late that row
    comes first: the tap begins with the last row that was started. */
 static void begin(ethd__station *s, const ethd_loop_row *row) {
+  const bool is_first = s->phase == ETHD_PHASE_DUE;
   s->phase = ETHD_PHASE_TAP;
   s->stage.rows.count = 0;
   s->approach = (ethd__approach){0};
   s->last = (size_t)(SECONDS / s->rule.period);
   s->begin_ns = row->trace.sense.time_ns;
   s->touched = false;
-  ethd__markers_send(s->desk->markers, "trial-begin", s->turn, s->begin_ns, "-");
+  if (is_first) ethd__markers_send(s->desk->markers, "trial-begin", &s->turn, s->begin_ns, "-");
   memcpy(s->stage.heat, row->heat, sizeof row->heat);
 }
 
@@ -48,7 +49,7 @@ static void add(ethd__station *s, const ethd_loop_row *row) {
     s->last = rows->count + (size_t)floor(ETHD_TAP_AFTER / s->rule.period + 0.5);
   if (!s->touched && rows->truth[rows->count].pad > 0) {
     s->touched = true;
-    ethd__markers_send(s->desk->markers, "contact", s->turn, row->trace.sense.time_ns, "-");
+    ethd__markers_send(s->desk->markers, "contact", &s->turn, row->trace.sense.time_ns, "-");
   }
   if (rows->count++ >= s->last || row->trace.fault) s->phase = ETHD_PHASE_OVER;
 }
@@ -109,7 +110,7 @@ static ethd_status take_strategy(ethd__station *s, const char *law, char *messag
 static void make_ready(ethd__station *s, const ethd__taken *taken) {
   s->stage.study = &s->desk->study;
   s->stage.law = taken->stage->law;
-  s->turn = &taken->turn;
+  s->turn = taken->turn;
   s->stage.setup = s->session.setup;
   s->rule = ethd__stage_rule(&s->stage, taken->speed, s->stage.setup.finger_radius);
   s->rule.carried = true;
@@ -163,7 +164,10 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
   make_ready(s, out);
   set_phase(s, ETHD_PHASE_DUE);
   status = ethd__session_enable(&s->session);
-  if (status) return ethd__say(message, status, "enabling the device: %s", ethd_status_sentence(status));
+  if (status) {
+    set_phase(s, ETHD_PHASE_IDLE);
+    return ethd__say(message, status, "enabling the device: %s", ethd_status_sentence(status));
+  }
   if (!follow(s)) return ETHD_STATUS_EMPTY;
   if (s->status) return ethd__say(message, s->status, "the tap's ticks: %s", ethd_status_sentence(s->status));
   if (!was_tap(&s->stage.rows)) return ETHD_STATUS_EMPTY;

@@ -26,7 +26,7 @@ typedef struct ethd__station {
   pthread_mutex_t lock; /* for what follows, of the tap that is being taken */
   ethd__phase phase;
   ethd__rule rule;
-  const ethd__turn *turn;
+  ethd__turn turn;
   bool touched;
   ethd__approach approach;
   size_t last; /* the last row, as far as is known */
