@@ -47,9 +47,11 @@ static void seat(ethd__desk *desk, uint32_t person) {
 
 /* ---- recorded fingers ---- */
 
-/* How many taps of its cell are before it at least, as if each trial took all its attempts. */
+/* The number of an attempt within its cell, from 0. Interleaved, the first attempts of all rounds come first, so that
+   rounds meet different movements. */
 static uint32_t before(const ethd__desk *desk, const ethd__turn *turn) {
-  return turn->block.round * ethd__block_attempts(desk->protocol) + turn->attempt - 1;
+  const bool is_interleaved = desk->protocol->order == ETHD_ORDER_INTERLEAVED;
+  return (turn->attempt - 1) * (is_interleaved ? desk->protocol->taps : 1) + turn->block.round;
 }
 
 /* The movements are dealt out among the participants; every strategy meets the same ones. */
