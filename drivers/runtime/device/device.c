@@ -108,13 +108,15 @@ static uint32_t turn(const ethd_device *d, uint32_t i) {
   return order[i];
 }
 
-/* Starts all drivers; when one refuses, those that have started are stopped. A prepared device isn't open. */
+/* Starts all drivers; when one refuses, by any status but ETHD_OK, those that have started are stopped. A prepared device
+   isn't open. */
 ethd_status ethd_device_start(ethd_device *d) {
   if (is_forked(d) || d->only_prepares) return ETHD_E_DEVICE;
   if (d->inject && ethd__inject_start(d->inject)) return ETHD_E_DEVICE;
   for (uint32_t i = 0; i < d->count; i++) {
     ethd_status status = start_one(d, turn(d, i));
-    if (status >= 0) continue;
+    if (!status) continue;
+    if (status > 0) (void)!stop_one(d, turn(d, i));
     while (i--) (void)!stop_one(d, turn(d, i));
     return status;
   }
