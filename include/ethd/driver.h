@@ -170,8 +170,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_prepare(const char *ids, const 
 ETHD_API void ethd_device_close(ethd_device *device);
 
 /* Do what the functions of ethd_driver of that name do, with all drivers of the device. A start that fails stops what
-   had started; a driver without stop is made safe. q: rad. home:
-   ETHD_E_ARGUMENT where no driver has one. [main] */
+   had started; a driver whose start gives a positive status is stopped, too, and the start fails with ETHD_E_DEVICE. A
+   driver without stop is made safe. q: rad. home: ETHD_E_ARGUMENT where no driver has one. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_start(ethd_device *device);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_stop(ethd_device *device);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_home(ethd_device *device, const double q[2]);

@@ -158,7 +158,7 @@ TEST(test_undone) {
   start_status = ETHD_E_DEVICE;
   ck_assert_int_eq(ethd_device_start(device), ETHD_E_DEVICE);
   start_status = ETHD_STATUS_STALE;
-  ck_assert_int_eq(ethd_device_start(device), ETHD_STATUS_STALE);
+  ck_assert_int_eq(ethd_device_start(device), ETHD_E_DEVICE);
   start_status = ETHD_OK;
   ethd_device_close(device);
   ck_assert_str_eq(log_, "oaobsbsatbsbsatatbcbca");

@@ -108,8 +108,7 @@ static uint32_t turn(const ethd_device *d, uint32_t i) {
   return order[i];
 }
 
-/* Starts all drivers; when one refuses, by any status but ETHD_OK, those that have started are stopped. A prepared device
-   isn't open. */
+/* A prepared device isn't open. */
 ethd_status ethd_device_start(ethd_device *d) {
   if (is_forked(d) || d->only_prepares) return ETHD_E_DEVICE;
   if (d->inject && ethd__inject_start(d->inject)) return ETHD_E_DEVICE;
@@ -118,7 +117,7 @@ ethd_status ethd_device_start(ethd_device *d) {
     if (!status) continue;
     if (status > 0) (void)!stop_one(d, turn(d, i));
     while (i--) (void)!stop_one(d, turn(d, i));
-    return status;
+    return status > 0 ? ETHD_E_DEVICE : status;
   }
   return ETHD_OK;
 }
