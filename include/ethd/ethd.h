@@ -22,5 +22,6 @@
 #include "ethd/plugin.h"
 #include "ethd/scene.h"
 #include "ethd/sense.h"
+#include "ethd/surface.h"
 
 #endif

@@ -1,4 +1,4 @@
-/* Vectors of the plane, and elementary functions that give the same bits everywhere. Links from libethd. */
+/* Vectors of the plane and of space, and elementary functions that give the same bits everywhere. Links from libethd. */
 #ifndef ETHD_MATHS_H
 #define ETHD_MATHS_H
 
@@ -52,6 +52,56 @@ static inline double ethd_vec_cross(ethd_vec a, ethd_vec b) ETHD_RT { return a.x
 
 /* Returns the length, >= 0. [any, rt-safe] */
 static inline double ethd_vec_norm(ethd_vec a) ETHD_RT { return sqrt(a.x * a.x + a.y * a.y); }
+
+/* ---- vectors of space ---- */
+
+/* A vector of space, in a right-handed frame that its user names; m, rad, s, N. The plane's x and y are the first two. */
+typedef struct ethd_vec3 {
+  double x, y, z;
+} ethd_vec3;
+
+/* Returns three numbers in memory, x first, as a vector. [any, rt-safe] */
+static inline ethd_vec3 ethd_vec3_of(const double v[3]) ETHD_RT {
+  ethd_vec3 r = {v[0], v[1], v[2]};
+  return r;
+}
+
+/* Writes the vector as three numbers, x first. [any, rt-safe] */
+static inline void ethd_vec3_put(ethd_vec3 a, double out[3]) ETHD_RT {
+  out[0] = a.x;
+  out[1] = a.y;
+  out[2] = a.z;
+}
+
+/* Returns a + b. [any, rt-safe] */
+static inline ethd_vec3 ethd_vec3_add(ethd_vec3 a, ethd_vec3 b) ETHD_RT {
+  ethd_vec3 r = {a.x + b.x, a.y + b.y, a.z + b.z};
+  return r;
+}
+
+/* Returns a - b. [any, rt-safe] */
+static inline ethd_vec3 ethd_vec3_sub(ethd_vec3 a, ethd_vec3 b) ETHD_RT {
+  ethd_vec3 r = {a.x - b.x, a.y - b.y, a.z - b.z};
+  return r;
+}
+
+/* Returns s times a. [any, rt-safe] */
+static inline ethd_vec3 ethd_vec3_scale(double s, ethd_vec3 a) ETHD_RT {
+  ethd_vec3 r = {s * a.x, s * a.y, s * a.z};
+  return r;
+}
+
+/* Returns the scalar product. [any, rt-safe] */
+static inline double ethd_vec3_dot(ethd_vec3 a, ethd_vec3 b) ETHD_RT { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/* Returns a x b. [any, rt-safe] */
+static inline ethd_vec3 ethd_vec3_cross(ethd_vec3 a, ethd_vec3 b) ETHD_RT {
+  ethd_vec3 r = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  return r;
+}
+
+/* Returns the length, >= 0. [any, rt-safe] */
+static inline double ethd_vec3_norm(ethd_vec3 a) ETHD_RT { return sqrt(a.x * a.x + a.y * a.y + a.z * a.z); }
 
 /* ---- functions ---- */
 
