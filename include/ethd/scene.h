@@ -13,7 +13,7 @@
 
 #include "ethd/arm.h"
 #include "ethd/maths.h"
-#include "ethd/param.h"
+#include "ethd/surface.h"
 
 ETHD_BEGIN_DECLS
 
@@ -30,20 +30,6 @@ typedef enum ethd_shape {
   ETHD_SHAPE_POLYLINE,
   ETHD_SHAPE_COUNT
 } ethd_shape;
-
-#define ETHD_MATERIALS_MAX 32
-#define ETHD_NAME_MAX 32 /* bytes of a name, the closing 0 included */
-
-/* A named surface: values that replace parameters of the setup's contact law ("k_e"). */
-typedef struct ethd_material {
-  char name[ETHD_NAME_MAX];
-  uint32_t count;
-  int32_t line; /* where it was defined, 0 without text */
-  struct {
-    char name[ETHD_NAME_MAX];
-    double value;
-  } values[ETHD_PARAMS_MAX];
-} ethd_material;
 
 typedef struct ethd_object_def {
   ethd_shape shape;

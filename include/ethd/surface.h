@@ -1,5 +1,5 @@
 /* What of the virtual world is near the end effector: points of surfaces, handed to the controller by whoever knows the
-   world. Links from libethd.
+   world, and what surfaces are made of. Links from libethd.
 
           X        n        P = point      n.(P - X): distance along n, < 0 behind the surface
           o ------------->|/////////
@@ -10,8 +10,23 @@
 #include <stdint.h>
 
 #include "ethd/maths.h"
+#include "ethd/param.h"
 
 ETHD_BEGIN_DECLS
+
+#define ETHD_MATERIALS_MAX 32
+#define ETHD_NAME_MAX 32 /* bytes of a name, the closing 0 included */
+
+/* A named surface: values that replace parameters of the setup's contact law ("k_e"). */
+typedef struct ethd_material {
+  char name[ETHD_NAME_MAX];
+  uint32_t count;
+  int32_t line; /* where it was defined, 0 without text */
+  struct {
+    char name[ETHD_NAME_MAX];
+    double value;
+  } values[ETHD_PARAMS_MAX];
+} ethd_material;
 
 /* A point at which an object is nearest to X: a local minimum of the distance. Frame: R_0. */
 typedef struct ethd_surface {

@@ -1,9 +1,7 @@
 #include "scene/check.h"
 
 #include <float.h>
-#include <string.h>
 
-#include "error.h"
 #include "scene/shapes.h"
 
 #define POINTS_MAX (INT32_MAX / 2 - 1) /* a vertex is feature 2 k + 1, which must fit into an int32_t */
@@ -15,50 +13,13 @@ static ethd_status refuse_object(const ethd_object_def *def, ethd_status status,
   return status;
 }
 
-static size_t append(char name[64], size_t at, const char *word) {
-  while (*word && at < 63) name[at++] = *word++; /* unreachable: the cut, for the longest name has 53 characters */
-  name[at] = 0;
-  return at;
-}
-
 static size_t append_number(char name[64], size_t at, size_t value) {
   char digits[24];
   size_t n = sizeof digits - 1;
   digits[n] = 0;
   do digits[--n] = (char)('0' + value % 10);
   while (value /= 10);
-  return append(name, at, digits + n);
-}
-
-ethd_status ethd__check_count(ethd_shape shape, size_t count, ethd_status status, ethd_error *error) {
-  const ethd__shape *s = &ethd__shapes[shape];
-  bool pairs = !s->is_list || count % 2 == 0;
-  if (count >= s->count && (s->is_list || count == s->count) && pairs) return ETHD_OK;
-  char name[64];
-  size_t n = append(name, 0, pairs ? "numbers after " : "an even count of numbers after ");
-  append(name, n, s->name);
-  return ethd__refuse(error, status, name,
-                      (ethd__found){(double)count, (double)s->count, s->is_list ? INFINITY : (double)s->count});
-}
-
-static ethd_status refuse_number(const ethd_object_def *def, size_t k, ethd_error *error) {
-  const ethd__shape *s = &ethd__shapes[def->shape];
-  double v = def->numbers[k], max = ETHD__COORDINATE_MAX;
-  char name[64];
-  size_t n = append(name, 0, s->name), i = ethd__number_of(s, k);
-  append(name, append(name, n, " "), s->numbers[i].name);
-  return refuse_object(def, isfinite(v) ? ETHD_E_RANGE : ETHD_E_NOT_FINITE, name,
-                       (ethd__found){v, s->numbers[i].kind == ETHD__LENGTH ? 0 : -max, max}, error);
-}
-
-static ethd_status check_numbers(const ethd_object_def *def, ethd_error *error) {
-  const ethd__shape *s = &ethd__shapes[def->shape];
-  for (size_t k = 0; k < def->count; k++) {
-    double v = def->numbers[k];
-    bool fits = v > 0 || s->numbers[ethd__number_of(s, k)].kind != ETHD__LENGTH;
-    if (!(fabs(v) <= ETHD__COORDINATE_MAX && fits)) return refuse_number(def, k, error);
-  }
-  return ETHD_OK;
+  return ethd__append(name, at, digits + n);
 }
 
 /* Returns true if rounding can't tell two points apart, or the square of their distance would be lost. */
@@ -78,12 +39,12 @@ static ethd_vec point(const double *numbers, size_t k) {
 static ethd_status refuse_pair(const ethd_object_def *def, const char *what, const size_t pair[2], const char *fault,
                                ethd_error *error) {
   char name[64];
-  size_t n = append(name, 0, ethd_shape_name(def->shape));
-  n = append(name, n, what);
+  size_t n = ethd__append(name, 0, ethd_shape_name(def->shape));
+  n = ethd__append(name, n, what);
   n = append_number(name, n, pair[0]);
-  n = append(name, n, " and ");
+  n = ethd__append(name, n, " and ");
   n = append_number(name, n, pair[1]);
-  append(name, n, fault);
+  ethd__append(name, n, fault);
   return refuse_object(def, ETHD_E_GEOMETRY, name, ethd__unsaid, error);
 }
 
@@ -114,40 +75,12 @@ static ethd_status check_object(const ethd_scene_def *def, const ethd_object_def
     return refuse_object(o, ETHD_E_RANGE, "material", (ethd__found){o->material, -1, (double)def->material_count - 1},
                          error);
   const ethd__shape *shape = &ethd__shapes[o->shape];
-  ethd_status status = ethd__check_count(o->shape, o->count, ETHD_E_ARGUMENT, error);
-  if (!status) status = check_numbers(o, error);
+  ethd_status status = ethd__check_count(&shape->form, o->count, ETHD_E_ARGUMENT, error);
+  if (!status) status = ethd__check_numbers(&shape->form, o->numbers, o->count, error);
   if (!status && shape->check) status = shape->check(o, error);
   if (!status && shape->is_chain) status = check_chain(o, room, error);
   if (status && error) error->line = o->line;
   return status;
-}
-
-static ethd_status refuse_material(const ethd_material *m, ethd_status status, const char *name, ethd__found found,
-                                   ethd_error *error) {
-  ethd__refuse(error, status, name, found);
-  if (error) error->line = m->line;
-  return status;
-}
-
-static bool is_name(const char name[ETHD_NAME_MAX]) { return name[0] && memchr(name, 0, ETHD_NAME_MAX); }
-
-static ethd_status check_material(const ethd_scene_def *def, size_t i, ethd_error *error) {
-  const ethd_material *m = &def->materials[i];
-  if (!is_name(m->name)) return refuse_material(m, ETHD_E_ARGUMENT, "material", ethd__unsaid, error);
-  for (size_t k = 0; k < i; k++)
-    if (ethd__same(m->name, def->materials[k].name))
-      return refuse_material(m, ETHD_E_DUPLICATE, m->name, ethd__unsaid, error);
-  if (m->count > ETHD_PARAMS_MAX)
-    return refuse_material(m, ETHD_E_FULL, m->name, (ethd__found){m->count, 0, ETHD_PARAMS_MAX}, error);
-  for (uint32_t k = 0; k < m->count; k++) {
-    const char *name = m->values[k].name;
-    if (!is_name(name)) return refuse_material(m, ETHD_E_ARGUMENT, m->name, ethd__unsaid, error);
-    if (!isfinite(m->values[k].value))
-      return refuse_material(m, ETHD_E_NOT_FINITE, name, (ethd__found){m->values[k].value, NAN, NAN}, error);
-    for (uint32_t l = 0; l < k; l++)
-      if (ethd__same(name, m->values[l].name)) return refuse_material(m, ETHD_E_DUPLICATE, name, ethd__unsaid, error);
-  }
-  return ETHD_OK;
 }
 
 size_t ethd__check_room(const ethd_scene_def *def) {
@@ -163,13 +96,9 @@ size_t ethd__check_room(const ethd_scene_def *def) {
 ethd_status ethd__check_scene(const ethd_scene_def *def, void *room, ethd_error *error) {
   if ((def->object_count && !def->objects) || (def->material_count && !def->materials))
     return ethd__error(error, ETHD_E_ARGUMENT, "scene");
-  if (def->material_count > ETHD_MATERIALS_MAX)
-    return refuse_material(&def->materials[ETHD_MATERIALS_MAX], ETHD_E_FULL, "materials",
-                           (ethd__found){(double)def->material_count, 0, ETHD_MATERIALS_MAX}, error);
   if (def->object_count > INT32_MAX) /* unreachable: in a test, for it takes 80 GB of objects */
     return ethd__refuse(error, ETHD_E_FULL, "objects", (ethd__found){(double)def->object_count, 0, INT32_MAX});
-  ethd_status status = ETHD_OK;
-  for (size_t i = 0; i < def->material_count && !status; i++) status = check_material(def, i, error);
+  ethd_status status = ethd__check_materials(def->materials, def->material_count, error);
   for (size_t i = 0; i < def->object_count && !status; i++) status = check_object(def, &def->objects[i], room, error);
   return status;
 }

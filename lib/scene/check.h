@@ -6,14 +6,6 @@
 
 #include "ethd/scene.h"
 
-static inline bool ethd__same(const char *a, const char *b) {
-  while (*a && *a == *b) a++, b++;
-  return *a == *b;
-}
-
-/* Returns ETHD_OK if a shape may have this many numbers, else `status`; the error has no line. */
-ethd_status ethd__check_count(ethd_shape shape, size_t count, ethd_status status, ethd_error *error);
-
 /* Checks what ethd_scene_create promises to check. `room`: ethd__check_room(def) bytes, aligned like malloc's. */
 size_t ethd__check_room(const ethd_scene_def *def);
 ethd_status ethd__check_scene(const ethd_scene_def *def, void *room, ethd_error *error);

@@ -107,7 +107,8 @@ static double largest(const ethd_object_def *def) {
   const ethd__shape *s = &ethd__shapes[def->shape];
   double most = 0;
   for (size_t k = 0; k < def->count; k++)
-    if (s->numbers[ethd__number_of(s, k)].kind != ETHD__DIRECTION) most = greater(most, fabs(def->numbers[k]));
+    if (s->form.numbers[ethd__number_of(&s->form, k)].kind != ETHD__DIRECTION)
+      most = greater(most, fabs(def->numbers[k]));
   return most;
 }
 

@@ -66,7 +66,7 @@ size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, dou
 
 static size_t given_count(const ethd__object *o) {
   const ethd__shape *s = &ethd__shapes[o->shape];
-  return o->edges ? 2 * (o->edges + (s->is_closed ? 0 : (size_t)1)) : s->count;
+  return o->edges ? 2 * (o->edges + (s->is_closed ? 0 : (size_t)1)) : s->form.count;
 }
 
 int32_t ethd_scene_object(const ethd_scene *scene, size_t i, ethd_object_def *out) {

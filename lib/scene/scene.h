@@ -14,8 +14,7 @@
 
 #include "ethd/scene.h"
 
-#define ETHD__COORDINATE_MAX 1e6 /* m */
-#define ETHD__TINY 1e-140        /* m: squares of smaller lengths lose digits */
+#define ETHD__TINY 1e-140 /* m: squares of smaller lengths lose digits */
 
 typedef struct ethd__object {
   int32_t id; /* its number in the file */

@@ -115,43 +115,49 @@ static void box(const double *p, ethd_vec x, ethd_touch *out) ETHD_RT {
 /* ---- the table ---- */
 
 /* clang-format off */
+#define POINTS .cycle = 2, .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}}
+#define LIST .step = 2, .most = SIZE_MAX
+
 const ethd__shape ethd__shapes[ETHD_SHAPE_COUNT] = {
     [ETHD_SHAPE_HALFPLANE] = {
-        .name = "halfplane", .form = "NX NY C", .count = 3,
-        .numbers = {{"nx", ETHD__DIRECTION}, {"ny", ETHD__DIRECTION}, {"c", ETHD__COORDINATE}},
+        .form = {.name = "halfplane", .text = "NX NY C", .count = 3,
+                 .numbers = {{"nx", ETHD__DIRECTION}, {"ny", ETHD__DIRECTION}, {"c", ETHD__COORDINATE}}},
         .check = check_normal, .keep = keep_unit, .nearest = halfplane},
     [ETHD_SHAPE_CIRCLE] = {
-        .name = "circle", .form = "X Y R", .count = 3,
-        .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}, {"r", ETHD__LENGTH}},
+        .form = {.name = "circle", .text = "X Y R", .count = 3,
+                 .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}, {"r", ETHD__LENGTH}}},
         .discs = 1, .disc = circle_disc, .nearest = circle},
     [ETHD_SHAPE_CAPSULE] = {
-        .name = "capsule", .form = "X1 Y1 X2 Y2 R", .count = 5,
-        .numbers = {{"x1", ETHD__COORDINATE}, {"y1", ETHD__COORDINATE}, {"x2", ETHD__COORDINATE},
-                    {"y2", ETHD__COORDINATE}, {"r", ETHD__LENGTH}},
+        .form = {.name = "capsule", .text = "X1 Y1 X2 Y2 R", .count = 5,
+                 .numbers = {{"x1", ETHD__COORDINATE}, {"y1", ETHD__COORDINATE}, {"x2", ETHD__COORDINATE},
+                             {"y2", ETHD__COORDINATE}, {"r", ETHD__LENGTH}}},
         .discs = 2, .disc = capsule_disc, .nearest = capsule},
     [ETHD_SHAPE_BOX] = {
-        .name = "box", .form = "X Y HALF_W HALF_H ANGLE", .count = 5,
-        .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}, {"half_w", ETHD__LENGTH},
-                    {"half_h", ETHD__LENGTH}, {"angle", ETHD__DIRECTION}},
+        .form = {.name = "box", .text = "X Y HALF_W HALF_H ANGLE", .count = 5,
+                 .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}, {"half_w", ETHD__LENGTH},
+                             {"half_h", ETHD__LENGTH}, {"angle", ETHD__DIRECTION}}},
         .keep = keep_turn, .added = 2, .discs = 4, .disc = box_disc, .nearest = box},
     [ETHD_SHAPE_POLYGON] = {
-        .name = "polygon", .form = "X1 Y1 X2 Y2 X3 Y3 ...", .count = 6,
-        .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}}, .is_chain = true, .is_list = true,
-        .is_closed = true},
+        .form = {.name = "polygon", .text = "X1 Y1 X2 Y2 X3 Y3 ...", .count = 6, POINTS, LIST},
+        .is_chain = true, .is_closed = true},
     [ETHD_SHAPE_SEGMENT] = {
-        .name = "segment", .form = "X1 Y1 X2 Y2", .count = 4,
-        .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}}, .is_chain = true},
+        .form = {.name = "segment", .text = "X1 Y1 X2 Y2", .count = 4, POINTS},
+        .is_chain = true},
     [ETHD_SHAPE_POLYLINE] = {
-        .name = "polyline", .form = "X1 Y1 X2 Y2 ...", .count = 4,
-        .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}}, .is_chain = true, .is_list = true},
+        .form = {.name = "polyline", .text = "X1 Y1 X2 Y2 ...", .count = 4, POINTS, LIST},
+        .is_chain = true},
 };
 /* clang-format on */
 
+static const ethd__form *form(size_t shape) { return &ethd__shapes[shape].form; }
+
+const ethd__world ethd__plane = {"the plane", ETHD_SHAPE_COUNT, form};
+
 static bool is_shape(ethd_shape shape) { return (unsigned)shape < ETHD_SHAPE_COUNT; }
 
-const char *ethd_shape_name(ethd_shape shape) { return is_shape(shape) ? ethd__shapes[shape].name : ""; }
+const char *ethd_shape_name(ethd_shape shape) { return is_shape(shape) ? ethd__shapes[shape].form.name : ""; }
 
-const char *ethd_shape_form(ethd_shape shape) { return is_shape(shape) ? ethd__shapes[shape].form : ""; }
+const char *ethd_shape_form(ethd_shape shape) { return is_shape(shape) ? ethd__shapes[shape].form.text : ""; }
 
 void ethd__keep(const ethd_object_def *o, double *kept) {
   const ethd__shape *s = &ethd__shapes[o->shape];

@@ -5,16 +5,10 @@
 #ifndef ETHD__SCENE_SHAPES_H
 #define ETHD__SCENE_SHAPES_H
 
+#include "scene/form.h"
 #include "scene/scene.h"
 
-#define ETHD__GIVEN_MAX 5 /* the most numbers that a closed form is given by */
-#define ETHD__KEPT_MAX 7  /* the most that a scene keeps of one */
-
-typedef enum ethd__number_kind {
-  ETHD__COORDINATE, /* m, of either sign; part of the scene's extent */
-  ETHD__LENGTH,     /* m, above 0; part of the scene's extent */
-  ETHD__DIRECTION   /* a component of a unit vector or an angle: no part of the scene's extent */
-} ethd__number_kind;
+#define ETHD__KEPT_MAX 7 /* the most numbers that a scene keeps of a closed form */
 
 typedef struct ethd__disc {
   ethd_vec centre;
@@ -22,15 +16,8 @@ typedef struct ethd__disc {
 } ethd__disc;
 
 typedef struct ethd__shape {
-  const char *name;
-  const char *form; /* the numbers as a scene's file has them, for messages and help */
-  struct {
-    const char *name;
-    ethd__number_kind kind;
-  } numbers[ETHD__GIVEN_MAX]; /* of a chain: x and y of every point */
-  size_t count;               /* of numbers; for a list the least */
+  ethd__form form;
   bool is_chain;
-  bool is_list;   /* the chain may have any number of points */
   bool is_closed; /* the chain is closed by an edge to its first point and bounds a solid */
 
   /* All of the following belong to closed forms. `kept` numbers are the given ones and what `keep` adds. */
@@ -49,9 +36,6 @@ typedef struct ethd__shape {
 } ethd__shape;
 
 extern const ethd__shape ethd__shapes[ETHD_SHAPE_COUNT];
-
-/* Returns where number k of an object is in its shape's row. */
-static inline size_t ethd__number_of(const ethd__shape *s, size_t k) { return s->is_chain ? k % 2 : k; }
 
 /* Returns how many numbers a scene keeps of an object: polygons repeat their first point. */
 static inline size_t ethd__kept_count(const ethd_object_def *o) {

@@ -48,7 +48,7 @@ static void any_of(ethd_shape shape) {
   object_of(shape);
   for (size_t k = 0; k < o.count; k++) {
     const ethd__shape *s = &ethd__shapes[shape];
-    bool angle = s->numbers[ethd__number_of(s, k)].kind == ETHD__DIRECTION;
+    bool angle = s->form.numbers[ethd__number_of(&s->form, k)].kind == ETHD__DIRECTION;
     number(angle ? o.p[k] / draft.size : o.p[k]);
   }
 }

@@ -44,16 +44,16 @@ TEST(test_forms) {
   for (int i = 0; i < ETHD_SHAPE_COUNT; i++) {
     const ethd__shape *row = &ethd__shapes[i];
     char form[80], *rest = form;
-    ck_assert_str_eq(ethd_shape_name((ethd_shape)i), row->name);
+    ck_assert_str_eq(ethd_shape_name((ethd_shape)i), row->form.name);
     ck_assert_uint_lt(strlen(ethd_shape_form((ethd_shape)i)), sizeof form);
     strcpy(form, ethd_shape_form((ethd_shape)i));
     size_t words = 0;
     for (char *w; (w = strtok_r(rest, " ", &rest)) != NULL && strcmp(w, "...") != 0; words++) {
-      const char *name = row->numbers[row->is_chain ? words % 2 : words].name;
+      const char *name = row->form.numbers[row->is_chain ? words % 2 : words].name;
       ck_assert_int_eq(strncasecmp(w, name, row->is_chain ? 1 : strlen(w) + 1), 0);
     }
-    ck_assert_uint_eq(words, row->count);
-    ck_assert_int_eq(strstr(row->form, "...") != NULL, row->is_list);
+    ck_assert_uint_eq(words, row->form.count);
+    ck_assert_int_eq(strstr(row->form.text, "...") != NULL, row->form.most == SIZE_MAX);
     ck_assert_int_eq(row->nearest != NULL, !row->is_chain);
   }
   ck_assert_str_eq(ethd_shape_form(ETHD_SHAPE_BOX), "X Y HALF_W HALF_H ANGLE");
