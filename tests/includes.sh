@@ -10,12 +10,12 @@ esac
 exec "${PYTHON:-python3}" - <<'END'
 import pathlib, re, sys
 
-FLOORS = [r"lib/maths/|lib/[^/]*$", r"lib/(guard|scene|estimate|law)/", r"lib/control/", r"drivers/", r"apps/"]
+FLOORS = [r"lib/maths/|lib/[^/]*$", r"lib/(guard|scene|estimate|law)/", r"lib/core/", r"lib/control/", r"drivers/", r"apps/"]
 
 def floor(path):
     text = path.as_posix()
     if text.startswith("include/"):
-        return 3 if "Links from libethd-drivers" in path.read_text()[:400] else 0
+        return 4 if "Links from libethd-drivers" in path.read_text()[:400] else 0
     return next(i for i, pattern in enumerate(FLOORS) if re.match(pattern, text))
 
 def resolve(path, name):

@@ -17,7 +17,7 @@
    (ETHD_E_FENCE), and changing the processor's rounding mode, flushing of small numbers or traps (ETHD_E_FENV). The
    controller puts both back.
 
-   ABI 0 may break until 1.0. Within an ABI ethd_param is frozen; what a step is given (ethd_contact,
+   The ABI may break until 1.0. Within an ABI ethd_param is frozen; what a step is given (ethd_contact,
    ethd_tracking_in, ethd_facts) and the law structs grow at their end, and a law says how large its struct is:
    one that was built against an older header runs as it did. include/README.md has the policy. */
 #ifndef ETHD_LAW_H
@@ -31,7 +31,7 @@
 
 ETHD_BEGIN_DECLS
 
-#define ETHD_ABI 0u
+#define ETHD_ABI 1u
 #define ETHD_STATE_MAX 512u /* bytes of a law's state block */
 
 typedef enum ethd_kind { ETHD_TRACKING = 0, ETHD_CONTACT = 1, ETHD_TRANSITION = 2 } ethd_kind;
@@ -113,7 +113,7 @@ typedef struct ethd_facts {
 #define ETHD_MEMORY 4u
 
 typedef struct ethd_contact {
-  ethd_vec point, n;
+  ethd_vec3 point, n; /* m, unit vector, in R_0; in the plane z is 0 */
   double d_re, d_fe, d_fr;
   double v;                /* of the ring along n, relative to the surface */
   double v_f;              /* of the finger along n, relative to the surface */
@@ -150,10 +150,11 @@ typedef struct ethd_ruling {
   double offset;   /* eps, m: how much deeper the wall lies */
   double damping;  /* bilateral along n, Ns/m (eq. 6): F = -damping v n */
   double feed;     /* feed-forward force along n, N, added to the contact law's */
-  ethd_vec shift;  /* m, added to X_f - X_r; the shift of the contact with the smallest beta counts */
   double argument; /* the distance on which beta depends, m (recorded as trace.d_fe) */
   int32_t state;
   int32_t reserved;
+  double lead;  /* m along n, added to X_f - X_r; the lead of the contact with the smallest beta counts */
+  double speed; /* m/s along n against the surface that the effector mustn't exceed; INFINITY: none */
 } ethd_ruling;
 
 /* A live contact as the law that was replaced leaves it, at the tick of the swap. */
@@ -168,7 +169,7 @@ typedef struct ethd_past {
 
 typedef struct ethd_transition_law {
   ethd_law law;
-  /* `out` comes zeroed but for beta = 1 and argument = d_fe. [rt] */
+  /* `out` comes zeroed but for beta = 1, argument = d_fe and speed = INFINITY. [rt] */
   ethd_status (*step)(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) ETHD_RT;
 
   /* All that follows is optional: NULL, or a struct that ends before it, says that the law doesn't have it. */
@@ -183,7 +184,7 @@ typedef struct ethd_transition_law {
   const ethd_gains *gains; /* as of tracking */
 } ethd_transition_law;
 
-/* The smallest size of each kind in ABI 0: up to the end of its last field. */
+/* The smallest size of each kind in ABI 1: up to the end of its last field. */
 #define ETHD_TRACKING_LAW_MIN (offsetof(ethd_tracking_law, step) + sizeof(void (*)(void)))
 #define ETHD_CONTACT_LAW_MIN (offsetof(ethd_contact_law, step) + sizeof(void (*)(void)))
 #define ETHD_TRANSITION_LAW_MIN (offsetof(ethd_transition_law, step) + sizeof(void (*)(void)))

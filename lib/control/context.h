@@ -4,6 +4,7 @@
 #define ETHD__CONTROL_CONTEXT_H
 
 #include "control/state.h"
+#include "core/tick.h"
 
 typedef struct ethd__motion {
   ethd_vec x, v; /* m, m/s, in R_0 */
@@ -23,8 +24,7 @@ typedef struct ethd__tick {
   double dt;       /* s since the last tick that had a measurement */
   ethd_pose pose;  /* of the arm; unknown on a tick without measurement, where nothing needs it */
   ethd__motion ring, finger;
-  double near;    /* m: contacts with d_re below this count: d_beta, or as far as the law looks ahead */
-  ethd_vec shift; /* m: of the tracking's reference, from the contact with the smallest beta */
+  ethd__core_tick core; /* the same, as the core sees it, and what the contacts lead to */
   ethd_trace *trace;
 } ethd__tick;
 

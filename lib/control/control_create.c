@@ -34,13 +34,13 @@ ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out, eth
 void ethd_control_destroy(ethd_control *control) { free(control); }
 
 ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup, ethd_error *error) {
-  if (atomic_load_explicit(&control->posted, memory_order_acquire)) return ETHD_STATUS_BUSY;
-  ethd__plan *spare = &control->plans[1 - control->ruling];
+  if (atomic_load_explicit(&control->mail.posted, memory_order_acquire)) return ETHD_STATUS_BUSY;
+  ethd__plan *spare = &control->plans[1 - control->mail.ruling];
   ethd_status status = prepare(setup, spare, error);
   if (status < 0) return status;
   if (setup->period != control->period)
     return ethd__refuse(error, ETHD_E_ARGUMENT, "loop.period",
                         (ethd__found){setup->period, control->period, control->period});
-  atomic_store_explicit(&control->posted, 1, memory_order_release);
+  atomic_store_explicit(&control->mail.posted, 1, memory_order_release);
   return ETHD_OK;
 }

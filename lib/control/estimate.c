@@ -156,7 +156,7 @@ static bool use(const ethd__tick *t, ethd_vec reading) {
 static void correct(const ethd__tick *t) {
   ethd_vec seen;
   if (!is_new(t) || !noise_is_possible(t) || !reading(t, &seen) || !use(t, seen)) {
-    t->state->counters.readings_dropped++;
+    t->state->core.counters.readings_dropped++;
     return;
   }
   t->state->reading_ns = t->sense->sample_ns;

@@ -50,9 +50,10 @@ void ethd__facts(const ethd__tick *t, const ethd_contact *c, ethd_facts *out) {
   const ethd_setup *setup = &t->plan->setup;
   const ethd_dynamics *d = &setup->dynamics;
   const double *mobility = t->plan->mobility;
+  const ethd_vec n = {c->n.x, c->n.y};
   double g[2], h[2], w[2], last[2];
-  ethd_pose_torques(&t->pose, c->n, g);
-  ethd_pose_joints(&t->pose, c->n, w);
+  ethd_pose_torques(&t->pose, n, g);
+  ethd_pose_joints(&t->pose, n, w);
   on_links(t->plan, g, h);
   on_links(t->plan, t->state->guard.last, last);
   double w1 = fabs(w[0]) * setup->arm.link1, w2 = fabs(w[1]) * setup->arm.link2;
@@ -67,6 +68,6 @@ void ethd__facts(const ethd__tick *t, const ethd_contact *c, ethd_facts *out) {
   out->ring_radius = setup->ring_radius;
   out->finger_radius = setup->finger_radius;
   out->finger_age = finger_age(t);
-  out->finger_a = finger_acceleration(t, c->n);
-  out->memory = t->state->memory;
+  out->finger_a = finger_acceleration(t, n);
+  out->memory = t->state->core.memory;
 }

@@ -1,7 +1,7 @@
 /* How old and how plausible the finger's readings are: the rows FINGER_OLD, FINGER_LOST and ESTIMATE. */
 #include "control/finger_watch.h"
 
-#include "control/rows.h"
+#include "core/rows.h"
 
 /* s in which tracking fades out or in, as long as a swap takes by default (transition.swap_time). */
 #define FADE 0.020
@@ -18,8 +18,8 @@ void ethd__finger_watch(const ethd__tick *t) {
   if (state->filter.used == 0) return; /* no finger was seen yet, so none can be lost */
   double age = 1e-9 * ((double)((uint64_t)t->sense->time_ns - (uint64_t)state->reading_ns) - 0.5);
   bool old = !(age <= limits->finger_age);
-  if (old) ethd__note(state, ETHD_FAULT_FINGER_OLD);
-  if (!(age <= limits->finger_lost)) ethd__note(state, ETHD_FAULT_FINGER_LOST);
+  if (old) ethd__note(&state->core, ETHD_FAULT_FINGER_OLD);
+  if (!(age <= limits->finger_lost)) ethd__note(&state->core, ETHD_FAULT_FINGER_LOST);
   state->absent = old ? fmin(state->absent + t->dt / FADE, 1) : fmax(state->absent - t->dt / FADE, 0);
 }
 
@@ -27,7 +27,7 @@ void ethd__finger_doubt(ethd__state *state, bool implausible) {
   state->implausible = implausible ? state->implausible + 1 : 0;
   if (!implausible) return;
   if (state->implausible < IMPLAUSIBLE_MAX)
-    ethd__note(state, ETHD_FAULT_ESTIMATE);
+    ethd__note(&state->core, ETHD_FAULT_ESTIMATE);
   else
-    ethd__note_grave(state, ETHD_FAULT_ESTIMATE);
+    ethd__note_grave(&state->core, ETHD_FAULT_ESTIMATE);
 }

@@ -2,9 +2,7 @@
 #ifndef ETHD__CONTROL_PLAN_H
 #define ETHD__CONTROL_PLAN_H
 
-#include <stdbool.h>
-
-#include "ethd/control.h"
+#include "core/plan.h"
 
 /* Where objects are: 0 is the scene that stands still, i is bodies[i - 1]. */
 #define ETHD__PLACES (1 + ETHD_BODIES_MAX)
@@ -14,26 +12,18 @@ static inline const ethd_scene *ethd__place_scene(const ethd_setup *setup, int p
 }
 
 typedef struct ethd__plan {
+  ethd__core_plan core;
   ethd_setup setup;
-  int64_t period_ns;    /* setup.period, rounded */
-  double d_beta;        /* R_r - R_f,max, m */
-  int places;           /* places from here on have no scene */
-  bool has_rare_limits; /* a limit is set that most setups don't have: gap, joints, reach, heat */
-  bool watches_finger;  /* limits.finger_age or finger_lost is set */
-  bool watches_energy;  /* limits.energy is set */
-  int foreign;          /* bits: kinds whose law isn't the library's own */
-  /* the laws' steps as a tick calls them, see fence.h */
-  ethd_status (*track)(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) ETHD_RT;
-  ethd_status (*push)(const double *p, void *state, double gap, double speed, int entering, double *force) ETHD_RT;
-  ethd_status (*rule)(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) ETHD_RT;
+  int64_t period_ns;      /* setup.period, rounded */
+  int places;             /* places from here on have no scene */
+  bool has_rare_limits;   /* a limit is set that most setups don't have: gap, joints, reach, heat */
+  bool watches_finger;    /* limits.finger_age or finger_lost is set */
   ethd_velocity velocity; /* estimators, prepared */
   ethd_fit fit;
   ethd_filter filter;
-  double (*range)(const double *p, double speed) ETHD_RT; /* of the transition law; NULL: it doesn't look ahead */
-  double lag;                                             /* s, of the velocity estimate */
-  ethd_guard_device device;                               /* as the guard brakes it */
+  double lag;                 /* s, of the velocity estimate */
+  ethd_guard_device device;   /* as the guard brakes it */
   double brake_time;          /* s that full torque takes from limits.speed; 0: no limit, or a mass isn't known */
-  double damping_max;         /* Ns/m that the passivity controller may add */
   double mobility[2];         /* 1/(kg m^2): inverse inertia of the links' absolute angles; NaN: not known */
   double lag_least, lag_most; /* least and largest of setup.ray_lag and 0, s; equal: no ray lags */
   /* the contact law's parameters for each material of each place */
@@ -45,7 +35,7 @@ ethd_status ethd__plan_prepare(const ethd_setup *setup, ethd__plan *out, ethd_er
 
 /* Returns the contact law's parameters on a material of a place; -1 is no material. [rt] */
 static inline const double *ethd__contact_p(const ethd__plan *plan, int place, int32_t material) ETHD_RT {
-  return material < 0 ? plan->setup.contact_p : plan->material_p[place][material];
+  return material < 0 ? plan->core.contact_p : plan->material_p[place][material];
 }
 
 #endif

@@ -2,8 +2,9 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "control/fence.h"
+#include "control/plan.h"
 #include "control/setup.h"
+#include "core/fence.h"
 #include "error.h"
 #include "fp_mode.h"
 #include "scene/scene.h"
@@ -121,8 +122,6 @@ static ethd_status check_scene(const ethd_setup *s, int place, ethd_error *error
 
 static void prepare_ahead(const ethd_setup *s, ethd__plan *out) {
   const double links[2] = {s->arm.link1, s->arm.link2};
-  out->range = 0;
-  if (ETHD_LAW_HAS(s->transition, range)) out->range = s->transition->range;
   for (int i = 0; i < 2; i++) out->mobility[i] = 1 / (s->dynamics.mass[i] * links[i] * links[i]);
 }
 
@@ -134,7 +133,8 @@ static void prepare_guard(const ethd_setup *s, ethd__plan *out) {
   out->device = ethd_guard_device_of(&s->arm, &s->dynamics, s->limits.gap, s->period, out->lag);
   const bool known = !isnan(s->dynamics.mass[0]) && !isnan(s->dynamics.mass[1]);
   out->brake_time = known ? ethd_guard_brake_time(&out->device, &s->limits) : 0;
-  out->damping_max = fmin(DAMPING_MAX, ethd_guard_damping(&out->device, out->device.mass, true));
+  out->core.brake = ethd_guard_damping(&out->device, out->device.mass, true);
+  out->core.damping_max = fmin(DAMPING_MAX, out->core.brake);
 }
 
 /* Returns true for a limit that the guard looks at in every tick, or that has a `watches_` of its own. */
@@ -159,18 +159,35 @@ static bool has_rare_limits(const ethd_limits *limits) {
   return false;
 }
 
+static void prepare_core(const ethd_setup *s, ethd__core_plan *out) {
+  out->period = s->period;
+  out->radius = s->ring_radius;
+  out->finger_radius = s->finger_radius;
+  out->d_beta = s->ring_radius - s->finger_radius_max;
+  out->v_hysteresis = s->v_hysteresis;
+  out->swap_time = s->swap_time;
+  out->energy = s->limits.energy;
+  out->watches_energy = s->limits.energy < (double)INFINITY;
+  out->latches = s->limits.latch;
+  out->tracking = s->tracking;
+  out->contact = s->contact;
+  out->transition = s->transition;
+  memcpy(out->tracking_p, s->tracking_p, sizeof out->tracking_p);
+  memcpy(out->contact_p, s->contact_p, sizeof out->contact_p);
+  memcpy(out->transition_p, s->transition_p, sizeof out->transition_p);
+  ethd__fence_prepare(out);
+}
+
 ETHD__FP_APART static ethd_status prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
   TRY(ethd__setup_made(s, error));
   TRY(check_fields(s, error));
   TRY(check_laws(s, error));
   TRY(within("limits", ethd_limits_check(&s->limits, error), error));
   out->setup = *s;
-  ethd__fence_prepare(out);
+  prepare_core(s, &out->core);
   out->has_rare_limits = has_rare_limits(&s->limits);
   out->watches_finger = fmin(s->limits.finger_age, s->limits.finger_lost) < (double)INFINITY;
-  out->watches_energy = s->limits.energy < (double)INFINITY;
   out->period_ns = (int64_t)(1e9 * s->period + 0.5);
-  out->d_beta = s->ring_radius - s->finger_radius_max;
   TRY(within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error), error));
   TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error),
              error));

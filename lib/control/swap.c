@@ -4,9 +4,9 @@
 
 #include "control/estimate.h"
 #include "control/evaluate.h"
-#include "control/fence.h"
 #include "control/limit.h"
 #include "control/places.h"
+#include "core/swap.h"
 #include "estimate/filter_methods.h"
 
 /* ---- the state ---- */
@@ -35,53 +35,16 @@ static bool has_same_scene(const ethd__plan *a, const ethd__plan *b, int place) 
   return ethd__place_scene(&a->setup, place) == ethd__place_scene(&b->setup, place);
 }
 
-/* Makes a contact an orphan when its scene was replaced. Its object's number means nothing in the new scene, so its
-   touch is kept, by which candidates.c finds the same surface there. */
-static void orphan(ethd__state *state, int i, const ethd__state *old) {
-  ethd__slot *slot = &state->slots[i];
-  if (!(state->live & (old ? old->live : 0) & 1u << i)) {
-    ethd__slot_free(state, slot);
-    return;
-  }
-  slot->point = old->slots[i].point;
-  slot->past.n = old->slots[i].past.n;
-  state->orphans |= 1u << i;
-}
-
-/* Resets the new law's state, and hands it the contact as the old law leaves it after this tick if it can adopt one. */
-static void adopt(const ethd__plan *to, const ethd__slot *was, ethd__slot *slot) {
-  const ethd_transition_law *law = to->setup.transition;
-  const double *p = to->setup.transition_p;
-  ethd__block_reset(to, &law->law, p, &slot->transition);
-  if (!was || !ETHD_LAW_HAS(law, adopt)) return;
-  const double period = to->setup.period;
-  const ethd_past past = {.offset = was->past.offset,
-                          .d_re = was->past.d_re,
-                          .v = was->past.v,
-                          .age = (double)was->periods * period,
-                          .since = (double)(was->periods - was->changed) * period,
-                          .state = was->state};
-  ethd__fence_adopt(to, &slot->transition, &past);
-}
-
-static void swap_slot(const ethd__plan *from, const ethd__plan *to, const ethd__slot *was, ethd__slot *slot) {
-  if (from->setup.transition != to->setup.transition) adopt(to, was, slot);
-  if (from->setup.contact != to->setup.contact)
-    ethd__block_reset(to, &to->setup.contact->law, to->setup.contact_p, &slot->contact);
-}
-
 void ethd__swap_state(const ethd__plan *from, const ethd__plan *to, ethd__state *state, const ethd__state *old) {
+  unsigned replaced = 0;
   swap_velocity(from, to, state);
   swap_filter(from, to, state);
-  for (int place = 0; place < ETHD__PLACES; place++)
-    if (!has_same_scene(from, to, place)) ethd__place_forget(&state->places[place]);
-  if (from->setup.tracking != to->setup.tracking)
-    ethd__block_reset(to, &to->setup.tracking->law, to->setup.tracking_p, &state->tracking);
-  if (from->setup.transition != to->setup.transition) memset(state->memory, 0, sizeof state->memory);
-  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
-    if (!has_same_scene(from, to, state->slots[i].place)) orphan(state, i, old);
-    swap_slot(from, to, old && state->live & old->live & 1u << i ? &old->slots[i] : NULL, &state->slots[i]);
+  for (int place = 0; place < ETHD__PLACES; place++) {
+    if (has_same_scene(from, to, place)) continue;
+    ethd__place_forget(&state->places[place]);
+    replaced |= 1u << place;
   }
+  ethd__core_swap(&from->core, &to->core, &state->core, old ? &old->core : NULL, replaced);
 }
 
 /* ---- the tick of a swap ---- */
@@ -94,7 +57,7 @@ static bool evaluate_old(ethd__tick *t, double torque[2]) {
   old.plan = t->from;
   old.state = t->scratch;
   if (!ethd__evaluate(&old)) {
-    t->state->met = t->scratch->met; /* the row of the law that failed */
+    t->state->core.met = t->scratch->core.met; /* the row of the law that failed */
     return false;
   }
   ethd__limit(&old);

@@ -15,11 +15,11 @@
 
 #include "control/estimate.h"
 #include "control/evaluate.h"
-#include "control/fence.h"
 #include "control/limit.h"
 #include "control/places.h"
-#include "control/rows.h"
 #include "control/swap.h"
+#include "core/rows.h"
+#include "core/swap.h"
 
 #define CLOCK_WINDOW 0.2 /* s */
 #define GAP_MAX 1000000  /* periods: a longer gap counts as this one, so that sums stay small */
@@ -73,8 +73,8 @@ static bool clock_runs(const ethd__tick *t, bool in_time) {
   const bool told = t->sense->faults & ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD);
   state->clock_periods += t->periods;
   double expected = (double)state->clock_periods * period, passed = since(t->sense->time_ns, state->clock_ns);
-  bool good = state->counters.ticks < 2 || told || fabs(passed - expected) <= 2 * t->plan->setup.limits.gap;
-  if (good && in_time && !told && state->counters.ticks >= 2 && expected < CLOCK_WINDOW) return true;
+  bool good = state->core.counters.ticks < 2 || told || fabs(passed - expected) <= 2 * t->plan->setup.limits.gap;
+  if (good && in_time && !told && state->core.counters.ticks >= 2 && expected < CLOCK_WINDOW) return true;
   state->clock_ns = t->sense->time_ns;
   state->clock_periods = 0;
   return good;
@@ -89,7 +89,7 @@ static bool clock_is_good(const ethd__tick *t) {
   ethd__state *state = t->state;
   const double waited = expected + state->clock_waits, passed = since(t->sense->time_ns, state->time_ns);
   state->clock_waits = passed == 0 ? waited : 0;
-  bool good = expected <= most && (state->counters.ticks < 2 || passed == 0 || fabs(passed - waited) <= most);
+  bool good = expected <= most && (state->core.counters.ticks < 2 || passed == 0 || fabs(passed - waited) <= most);
   return clock_runs(t, expected <= most) && good;
 }
 
@@ -109,14 +109,14 @@ static void note_heat(ethd__tick *t) {
   const ethd_limits *held = t->from ? &t->from->setup.limits : &t->plan->setup.limits;
   if (held->nominal_torque < (double)INFINITY &&
       !(ethd_guard_heat(held, &t->state->guard, (double)t->periods * t->plan->setup.period) <= HOT))
-    ethd__note_grave(t->state, ETHD_FAULT_HEAT);
+    ethd__note_grave(&t->state->core, ETHD_FAULT_HEAT);
 }
 
 /* Notes the rows of limits that most setups don't have. */
 static void note_rare_limits(ethd__tick *t, bool possible) {
-  if (!clock_is_good(t)) ethd__note_grave(t->state, ETHD_FAULT_CLOCK);
+  if (!clock_is_good(t)) ethd__note_grave(&t->state->core, ETHD_FAULT_CLOCK);
   if (possible && !joints_are_good(t->plan->setup.limits.joints, t->sense->q))
-    ethd__note_grave(t->state, ETHD_FAULT_WORKSPACE);
+    ethd__note_grave(&t->state->core, ETHD_FAULT_WORKSPACE);
   note_heat(t);
   t->state->time_ns = t->sense->time_ns;
 }
@@ -124,12 +124,12 @@ static void note_rare_limits(ethd__tick *t, bool possible) {
 /* Returns whether the tick has a measurement. */
 static bool note_what_is_wrong(ethd__tick *t) {
   double which;
-  ethd__rows_begin(t->state, t->sense);
+  ethd__rows_begin(&t->state->core, t->sense->faults, t->sense->grave);
   bool possible = input_is_possible(t->sense, &which);
-  if (!possible) ethd__note_value(t->state, ETHD_FAULT_INPUT, which);
+  if (!possible) ethd__note_value(&t->state->core, ETHD_FAULT_INPUT, which);
   if (t->plan->has_rare_limits || (t->from && t->from->has_rare_limits)) note_rare_limits(t, possible);
-  if (possible && !t->state->fault && !(1e-9 * (double)t->sense->step_ns <= t->plan->setup.limits.step_time))
-    ethd__note_value(t->state, ETHD_FAULT_BUDGET, (double)t->sense->step_ns);
+  if (possible && !t->state->core.fault && !(1e-9 * (double)t->sense->step_ns <= t->plan->setup.limits.step_time))
+    ethd__note_value(&t->state->core, ETHD_FAULT_BUDGET, (double)t->sense->step_ns);
   return possible;
 }
 
@@ -137,7 +137,7 @@ static bool note_what_is_wrong(ethd__tick *t) {
 
 /* Sets trace->tau_raw. If a law fails, tau_raw stays undefined, but a row is noted that forbids a torque. */
 static void work_out_torque(ethd__tick *t, double old[2]) {
-  if (ethd__rows_forbid(t->state)) {
+  if (ethd__rows_forbid(&t->state->core)) {
     if (t->from) ethd__swap_state(t->from, t->plan, t->state, NULL);
     ethd__estimate(t);
   } else if (t->from && !t->soft) {
@@ -150,14 +150,16 @@ static void work_out_torque(ethd__tick *t, double old[2]) {
 
 /* ---- the guard ---- */
 
+static ethd__halt halt_of(ethd__state *state) { return (ethd__halt){&state->guard.stopping, &state->guard.stopped}; }
+
 static void guard(ethd__tick *t) {
   ethd__state *state = t->state;
   const ethd_limits *limits = &t->plan->setup.limits;
   if (t->plan->has_rare_limits && !reach_is_good(limits->reach, t->pose.x))
-    ethd__note_grave(state, ETHD_FAULT_WORKSPACE);
-  if (ethd__rows_any(&state->met.rows)) ethd__rows_stop(state);
+    ethd__note_grave(&state->core, ETHD_FAULT_WORKSPACE);
+  if (ethd__rows_any(&state->core.met.rows)) ethd__rows_stop(&state->core, halt_of(state));
   ethd__limit(t);
-  if (t->trace->guard & ETHD_GUARD_SPEED) ethd__note_value(state, ETHD_FAULT_SPEED, ethd_vec_norm(t->ring.v));
+  if (t->trace->guard & ETHD_GUARD_SPEED) ethd__note_value(&state->core, ETHD_FAULT_SPEED, ethd_vec_norm(t->ring.v));
 }
 
 /* ---- the whole tick ---- */
@@ -188,23 +190,21 @@ void ethd__tick_run(ethd__tick *t) {
   } else if (t->from) {
     ethd__swap_state(t->from, t->plan, state, NULL);
   }
-  if (ethd__rows_forbid(state)) memset(t->trace->tau_raw, 0, sizeof t->trace->tau_raw);
+  if (ethd__rows_forbid(&state->core)) memset(t->trace->tau_raw, 0, sizeof t->trace->tau_raw);
   if (measured)
     guard(t);
   else
     memset(state->guard.last, 0, sizeof state->guard.last); /* that is what was commanded */
-  if (t->trace->guard || state->fault || ethd__rows_any(&state->met.rows))
-    t->trace->fault = ethd__judge(t->plan, state, t->trace->guard, t->periods);
-  if (t->plan->range) memcpy(t->trace->learnt, state->memory, sizeof state->memory);
-  t->trace->tick = (int64_t)state->counters.ticks++;
+  if (t->trace->guard || state->core.fault || ethd__rows_any(&state->core.met.rows)) {
+    if (t->trace->guard) ethd__note_guard(&state->core, t->trace->guard, state->guard.cut);
+    t->trace->fault = ethd__judge(&state->core, t->plan->core.latches, halt_of(state), t->periods);
+  }
+  if (t->plan->core.range) memcpy(t->trace->learnt, state->core.memory, sizeof state->core.memory);
+  t->trace->tick = (int64_t)state->core.counters.ticks++;
 }
 
 void ethd__resume(const ethd__plan *plan, ethd__state *state) {
-  __atomic_store_n(&state->fault, ETHD_FAULT_NONE, __ATOMIC_RELAXED);
-  state->before = (ethd__fault_rows){0, 0}; /* so a row that lasts counts as a new occurrence */
+  ethd__core_resume(&plan->core, &state->core);
   state->guard.stopping = state->guard.stopped = 0;
   state->guard.steep = 0;
-  ethd__fade_end(state);
-  state->live = 0;
-  ethd__block_reset(plan, &plan->setup.tracking->law, plan->setup.tracking_p, &state->tracking);
 }

@@ -19,7 +19,7 @@
    works up to the speed v* = sqrt(2 a (gap - lag)).
 
    What the ring can do follows from the facts:  a = effort (F + f_c) / m.
-   Approach: friction is made up for, and the ring is led, by X_f + shift, so far that v* is over the finger's speed.
+   Approach: friction is made up for, and the ring is led, by X_f + lead n, so far that v* is over the finger's speed.
    Braking begins on brake_curve.h. The ring's acceleration is the curve's, plus rate (f(d) - v), less the disturbance
    w, with friction made up for. It is planned anew at each tick from the distance that is left and from what
    ring_observer.h says about the ring. The same loop then holds the ring, so beta is 0.
@@ -99,7 +99,7 @@ static bool meets_curve(const double *p, const predictive_state *s, const ethd_c
   return v > 0 && c->v_f > 0 && v >= ethd__brake_curve_speed(&m->curve, d);
 }
 
-/* Reduces the finger's lead over the ring, by a shift, to what leaves the ring room to stop. */
+/* Reduces the finger's lead over the ring, by a lead, to what leaves the ring room to stop. */
 static void approach(const double *p, const predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m,
                      ethd_ruling *out) {
   const ethd_facts *f = c->facts;
@@ -108,7 +108,7 @@ static void approach(const double *p, const predictive_state *s, const ethd_cont
   double lag = most(least(late, gap - stop), -gap / 2), share = within(c->v_f * (1 / SLOW), 0, 1);
   out->argument = c->d_fr;
   out->feed = share * most(ethd__ring_friction(m, s->ring.v), 0);
-  out->shift = ethd_vec_scale(share * (late - lag), c->n);
+  out->lead = share * (late - lag);
 }
 
 static void begin(predictive_state *s) {

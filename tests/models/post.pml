@@ -1,13 +1,12 @@
 /* Posting and taking of setups: [main] prepares the spare plan and says so, the tick takes it, uses both plans, hands
    the replaced scene back by an event, and only then lets [main] have the spare one again.
 
-   = lib/control/control_create.c: if (atomic_load_explicit(&control->posted, memory_order_acquire)) return ETHD_STATUS_BUSY;
-   = lib/control/control_create.c: ethd__plan *spare = &control->plans[1 - control->ruling];
-   = lib/control/control_create.c: atomic_store_explicit(&control->posted, 1, memory_order_release);
-   = lib/control/control.c: if (!atomic_load_explicit(&control->posted, memory_order_acquire)) return NULL;
-   = lib/control/control.c: if (ethd__events_room(&control->events) < ETHD__PLACES) return NULL;
-   = lib/control/control.c: control->ruling = 1 - control->ruling;
-   = lib/control/control.c: atomic_store_explicit(&control->posted, 0, memory_order_release);
+   = lib/control/control_create.c: if (atomic_load_explicit(&control->mail.posted, memory_order_acquire)) return ETHD_STATUS_BUSY;
+   = lib/control/control_create.c: ethd__plan *spare = &control->plans[1 - control->mail.ruling];
+   = lib/control/control_create.c: atomic_store_explicit(&control->mail.posted, 1, memory_order_release);
+   = lib/core/mail.c: if (!atomic_load_explicit(&m->posted, memory_order_acquire) || room(m) < events) return false;
+   = lib/core/mail.c: m->ruling = 1 - m->ruling;
+   = lib/control/control.c: atomic_store_explicit(&mail->posted, 0, memory_order_release);
 
    Kept: a tick never uses a plan that is being written, nor a scene that was freed; every scene that stops ruling is
    handed back once; a posted setup is taken in the end. With -DEAGER the application posts a

@@ -1,11 +1,11 @@
 /* The ring from one writer to one reader: events of the controller, rows of the loop. Counters run on and wrap round.
 
-   = lib/control/events.c: (atomic_load_explicit(&e->head, memory_order_relaxed) - atomic_load_explicit(&e->tail, memory_order_acquire));
-   = lib/control/events.c: e->at[head % ETHD__EVENTS] = *event;
-   = lib/control/events.c: atomic_store_explicit(&e->head, head + 1, memory_order_release);
-   = lib/control/events.c: if (tail == atomic_load_explicit(&e->head, memory_order_acquire)) return ETHD_STATUS_EMPTY;
-   = lib/control/events.c: *out = e->at[tail % ETHD__EVENTS];
-   = lib/control/events.c: atomic_store_explicit(&e->tail, tail + 1, memory_order_release);
+   = lib/core/mail.c: (atomic_load_explicit(&m->head, memory_order_relaxed) - atomic_load_explicit(&m->tail, memory_order_acquire));
+   = lib/core/mail.c: m->at[head % ETHD__EVENTS] = *event;
+   = lib/core/mail.c: atomic_store_explicit(&m->head, head + 1, memory_order_release);
+   = lib/core/mail.c: if (tail == atomic_load_explicit(&m->head, memory_order_acquire)) return ETHD_STATUS_EMPTY;
+   = lib/core/mail.c: *out = m->at[tail % ETHD__EVENTS];
+   = lib/core/mail.c: atomic_store_explicit(&m->tail, tail + 1, memory_order_release);
    = drivers/runtime/loop/cycle.c: r->at[head % r->size] = l->row;
    = drivers/runtime/loop/cycle.c: atomic_store_explicit(&r->head, head + 1, memory_order_release);
    = drivers/runtime/loop/loop.c: *out = r->at[tail % r->size];

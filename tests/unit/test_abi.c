@@ -1,4 +1,4 @@
-/* What a plugin or a driver was compiled against may not move: offsets and sizes of ABI 0, and of the drivers' ABI 2, on
+/* What a plugin or a driver was compiled against may not move: offsets and sizes of ABI 1, and of the drivers' ABI 2, on
    a 64-bit machine, and the tables of every law that the library brings. */
 #include <float.h>
 #include <stddef.h>
@@ -33,20 +33,20 @@ AT(ethd_param, def, 32, 8);
 AT(ethd_param, brief, 40, 8);
 
 /* Given to a law by the controller: they grow at their ends. */
-SIZE(ethd_contact, 112, 8);
-AT(ethd_contact, point, 0, 16);
-AT(ethd_contact, n, 16, 16);
-AT(ethd_contact, d_re, 32, 8);
-AT(ethd_contact, d_fe, 40, 8);
-AT(ethd_contact, d_fr, 48, 8);
-AT(ethd_contact, v, 56, 8);
-AT(ethd_contact, v_f, 64, 8);
-AT(ethd_contact, d_beta, 72, 8);
-AT(ethd_contact, period, 80, 8);
-AT(ethd_contact, age, 88, 8);
-AT(ethd_contact, object, 96, 4);
-AT(ethd_contact, body, 100, 4);
-AT(ethd_contact, facts, 104, 8);
+SIZE(ethd_contact, 128, 8);
+AT(ethd_contact, point, 0, 24);
+AT(ethd_contact, n, 24, 24);
+AT(ethd_contact, d_re, 48, 8);
+AT(ethd_contact, d_fe, 56, 8);
+AT(ethd_contact, d_fr, 64, 8);
+AT(ethd_contact, v, 72, 8);
+AT(ethd_contact, v_f, 80, 8);
+AT(ethd_contact, d_beta, 88, 8);
+AT(ethd_contact, period, 96, 8);
+AT(ethd_contact, age, 104, 8);
+AT(ethd_contact, object, 112, 4);
+AT(ethd_contact, body, 116, 4);
+AT(ethd_contact, facts, 120, 8);
 
 SIZE(ethd_facts, 96, 8);
 AT(ethd_facts, mass, 0, 8);
@@ -70,6 +70,11 @@ AT(ethd_past, age, 24, 8);
 AT(ethd_past, since, 32, 8);
 AT(ethd_past, state, 40, 4);
 
+SIZE(ethd_vec3, 24, 8);
+AT(ethd_vec3, x, 0, 8);
+AT(ethd_vec3, y, 8, 8);
+AT(ethd_vec3, z, 16, 8);
+
 SIZE(ethd_vec, 16, 8);
 AT(ethd_vec, x, 0, 8);
 AT(ethd_vec, y, 8, 8);
@@ -88,9 +93,10 @@ AT(ethd_ruling, share, 8, 8);
 AT(ethd_ruling, offset, 16, 8);
 AT(ethd_ruling, damping, 24, 8);
 AT(ethd_ruling, feed, 32, 8);
-AT(ethd_ruling, shift, 40, 16);
-AT(ethd_ruling, argument, 56, 8);
-AT(ethd_ruling, state, 64, 4);
+AT(ethd_ruling, argument, 40, 8);
+AT(ethd_ruling, state, 48, 4);
+AT(ethd_ruling, lead, 56, 8);
+AT(ethd_ruling, speed, 64, 8);
 
 /* May grow at their ends: nothing here moves, and a plugin of today stays long enough. */
 AT(ethd_law, size, 0, 4);
@@ -219,7 +225,7 @@ AT(ethd_command, safe, 16, 4);
 SIZE(ethd_error, 96, 8);
 #endif
 
-_Static_assert(ETHD_ABI == 0 && ETHD_STATE_MAX == 512 && ETHD_PARAMS_MAX == 16, "ABI 0");
+_Static_assert(ETHD_ABI == 1 && ETHD_STATE_MAX == 512 && ETHD_PARAMS_MAX == 16, "ABI 1");
 _Static_assert(ETHD_DRIVER_ABI / 10000 == 2 && ETHD_MESSAGE_MAX == 512, "the drivers' ABI 2");
 _Static_assert(ETHD_HAVE_DQ == 1 && ETHD_HAVE_FINGER == 2 && ETHD_HAVE_START == 4 && ETHD_HAVE_CENTRE == 8 &&
                    ETHD_HAVE_RAYS == 16 && ETHD_HAVE_RING == 32 && ETHD_HAVE_BODY == 64 && ETHD_HAVE_WORLD == 1024,
@@ -306,7 +312,7 @@ TEST(test_law_check) {
   law = ethd_transition_smooth;
   law.law.params = NULL;
   ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_TABLE);
-  law.law.abi = 1; /* said before all else: nothing behind it can be trusted */
+  law.law.abi = ETHD_ABI + 1; /* said before all else: nothing behind it can be trusted */
   ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_ABI);
 }
 

@@ -72,12 +72,12 @@ TEST(test_state_stays_with_its_wall) {
   rig_close(&r);
 }
 
-/* What two contacts say, together: forces add, the smaller beta and its shift count. */
+/* What two contacts say, together: forces add, the smaller beta and its lead count. */
 static ethd_status saying_step(const double *p, void *state, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
   (void)p, (void)state;
   out->state = ETHD_VO;
   out->beta = c->object ? 0.25 : 0.5;
-  out->shift = c->object ? (ethd_vec){0, 0.002} : (ethd_vec){0.001, 0};
+  out->lead = c->object ? -0.002 : 0.001;
   out->share = c->object ? 0.5 : 1;
   out->offset = c->object ? 0 : 0.0005;
   out->damping = c->object ? 10 : 0;
@@ -103,7 +103,7 @@ TEST(test_rulings_together) {
     close_to(t->fd[0], 0);
     close_to(t->fd[1], 10 * 0.2);
     close_to(t->beta, 0.25);
-    /* the finger stands at the ring, so eps_q is the shift's alone: J eps_q = (0, 2 mm) */
+    /* the finger stands at the ring, so eps_q is the lead's alone: J eps_q = (0, 2 mm) */
     double a = t->sense.q[0], b = t->sense.q[1];
     close_to(-0.25 * (sin(a) * t->eps_q[0] + sin(b) * t->eps_q[1]), 0);
     close_to(0.25 * (cos(a) * t->eps_q[0] + cos(b) * t->eps_q[1]), 0.002);

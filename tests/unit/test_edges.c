@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "control/fence.h"
+#include "core/fence.h"
 #include "ethd/estimate.h"
 #include "proximity_ring/decoder.h"
 #include "unit/rig.h"
@@ -61,7 +61,7 @@ TEST(test_whose_law_it_is) {
 
 /* Whichever block's law hangs, it is named. */
 TEST(test_each_block_says_whose_law_runs) {
-  static ethd__state state;
+  static ethd__core state;
   const ethd_law *const law = &ethd_contact_spring.law;
   ck_assert_ptr_null(ethd__fence_runs(&state));
   for (int i = -1; i < 2 * ETHD_CONTACTS_MAX; i++) {

@@ -58,8 +58,10 @@ static const struct {
     {ETHD_TRANSITION, offsetof(ethd_ruling, damping), INFINITY},
     {ETHD_TRANSITION, offsetof(ethd_ruling, feed), NAN},
     {ETHD_TRANSITION, offsetof(ethd_ruling, feed), -INFINITY},
-    {ETHD_TRANSITION, offsetof(ethd_ruling, shift.x), NAN},
-    {ETHD_TRANSITION, offsetof(ethd_ruling, shift.y), INFINITY},
+    {ETHD_TRANSITION, offsetof(ethd_ruling, lead), NAN},
+    {ETHD_TRANSITION, offsetof(ethd_ruling, lead), INFINITY},
+    {ETHD_TRANSITION, offsetof(ethd_ruling, speed), NAN},
+    {ETHD_TRANSITION, offsetof(ethd_ruling, speed), -INFINITY},
     {ETHD_TRANSITION, offsetof(ethd_ruling, argument), NAN},
 };
 

@@ -204,7 +204,7 @@ TEST_LOOP(test_is_offset_when_blind, 0, 8) {
   ethd_params_default(ethd_transition_offset.law.params, ethd_transition_offset.law.param_count, q);
   for (int i = 0; i < 400; i++) {
     double w = 0.02 * i, d = 4e-3 * cos(w), v = 0.08 * sin(w);
-    ethd_contact c = {{0, 0}, {-1, 0}, d, d + 1e-3, d - 3e-3, v, v, 2.5e-3, 1e-3, 0, 0, 0, given};
+    ethd_contact c = {{0, 0, 0}, {-1, 0, 0}, d, d + 1e-3, d - 3e-3, v, v, 2.5e-3, 1e-3, 0, 0, 0, given};
     ethd_ruling r = rule(a, &c), o = {.beta = 1, .argument = c.d_fe};
     ck_assert_int_eq(ethd_transition_offset.step(q, b, &c, &o), ETHD_OK);
     ck_assert(memcmp(&r, &o, sizeof r) == 0);
@@ -233,8 +233,8 @@ TEST_LOOP(test_any_input, 0, 4) {
     ethd_facts facts = facts_of(fabs(x[0]) + 1e-3, fabs(x[1]) + 1e-3, fabs(x[2]));
     facts.applied = x[3];
     facts.finger_age = fabs(x[4]);
-    ethd_contact c = {{0, 0}, {-1, 0}, x[5], x[5] + x[6],           x[6], x[7], x[4], 2.5e-3, i % 97 ? 1e-3 : 0.5,
-                      0,      0,       0,    i % 13 ? &facts : NULL};
+    ethd_contact c = {{0, 0, 0}, {-1, 0, 0}, x[5], x[5] + x[6],           x[6], x[7], x[4], 2.5e-3, i % 97 ? 1e-3 : 0.5,
+                      0,         0,          0,    i % 13 ? &facts : NULL};
     ethd_ruling r = rule(state, &c);
     if (r.state == ETHD_BRAKING) ck_assert(fabs(r.feed) <= facts.force);
     if (i % 501 == 0) memset(state, 0, sizeof state);

@@ -145,7 +145,7 @@ static ethd_sense scripted(rig *r, int tick) {
 /* The same controller without a fade. */
 static void copy_without_fade(ethd_control *to, const ethd_control *from) {
   memcpy(to, from, sizeof *to);
-  to->state.fade.elapsed = INFINITY;
+  to->state.core.fade.elapsed = INFINITY;
 }
 
 TEST(test_ten_thousand) {
@@ -162,14 +162,14 @@ TEST(test_ten_thousand) {
     randomize(&r.setup, (uint64_t)n, scene);
     rig_post(&r);
     ethd_command told, bare;
-    nested += !isinf(r.control->state.fade.elapsed);
+    nested += !isinf(r.control->state.core.fade.elapsed);
     ck_assert_int_eq(ethd_control_rehearse(r.control, &s, &told), ETHD_OK); /* the one that doesn't swap */
     ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
     ck_assert_int_eq(r.trace.swap, 1);
     ck_assert_mem_eq(told.torque, r.trace.tau, sizeof told.torque);
     ck_assert_int_eq(rig_poll(&r).kind, ETHD_EVENT_TAKEN);
     double delta[2], elapsed = 0, last[2];
-    memcpy(delta, r.control->state.fade.delta, sizeof delta);
+    memcpy(delta, r.control->state.core.fade.delta, sizeof delta);
     memcpy(last, delta, sizeof last);
     moved += fabs(delta[0]) > 0.1;
     copy_without_fade(&plain, r.control);

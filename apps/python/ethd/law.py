@@ -84,7 +84,7 @@ def _made(kind: str, id: str, step: Callable[..., Any], brief: str, params: Dict
         at.min, at.max = row.min, row.max
         setattr(at, "def", row.default)
     struct = ffi.new(f"ethd_{kind}_law *")
-    struct.law.size, struct.law.abi, struct.law.kind = ffi.sizeof(struct[0]), 0, KINDS.index(kind)
+    struct.law.size, struct.law.abi, struct.law.kind = ffi.sizeof(struct[0]), lib.ethd_laws[0].abi, KINDS.index(kind)
     struct.law.state_size = 8 * numbers
     struct.law.id, struct.law.brief = words(id), words(brief)
     struct.law.params, struct.law.param_count = table, len(rows)

@@ -17,9 +17,9 @@
    A contact that begins soon after the last one ended, as in a bounce, goes on with what that one gave away. A contact
    that is watched only once it is within the wall, after a swap or an acknowledged fault, has already stored energy;
    its account begins with that. */
-#include "control/passivity.h"
+#include "core/passivity.h"
 
-#include "control/rows.h"
+#include "core/rows.h"
 
 #define MEMORY 0.5       /* s */
 #define EXCESS_MAX 0.050 /* s */
@@ -40,39 +40,39 @@ static void observe(ethd__slot *slot, const ethd_contact *c) {
 
 /* What a spring that pushes like this wall has stored; one that stiffens has stored less. A wall that came to the ring
    by itself, in a new scene, has stored nothing. */
-static double stored(const ethd__tick *t, const ethd__slot *slot, double depth, double wall) {
+static double stored(const ethd__core_tick *t, const ethd__slot *slot, double depth, double wall) {
   return slot->periods > 0 || t->soft ? fmax(-wall * depth / 2, 0) : 0;
 }
 
-static void begin(const ethd__tick *t, ethd__slot *slot, double depth, double wall) {
-  const ethd__state *state = t->state;
+static void begin(const ethd__core_tick *t, ethd__slot *slot, double depth, double wall) {
+  const ethd__core *core = t->state;
   double has = stored(t, slot, depth, wall);
-  double passed = (double)(state->counters.ticks - state->given_at) * t->plan->setup.period;
+  double passed = (double)(core->counters.ticks - core->given_at) * t->plan->period;
   for (int late = 0; late < 2; late++) {
-    slot->energy[late] = has - state->given * fmax(1 - passed / MEMORY, 0);
+    slot->energy[late] = has - core->given * fmax(1 - passed / MEMORY, 0);
     slot->force[late] = has > 0 ? wall : 0; /* it has pushed all along */
   }
 }
 
 /* Returns the damping to add, Ns/m: it begins when more than the bound was given away and ends below half of it. */
-static double damping(const ethd__plan *plan, ethd__slot *slot, double given, double v, double period) {
-  const double bound = plan->setup.limits.energy;
+static double damping(const ethd__core_plan *plan, ethd__slot *slot, double given, double v, double period) {
+  const double bound = plan->energy;
   if (given > bound) slot->giving = true;
   if (given <= bound / 2) slot->giving = false;
   if (!slot->giving || v == 0) return 0;
   return fmin((given - bound / 2) / (v * v * period), plan->damping_max);
 }
 
-static bool persists(ethd__state *state, double period) {
-  uint64_t now = state->counters.ticks + 1;
-  if (state->excess_at == 0 || (double)(now - state->excess_at) * period > RESPITE) state->excess_from = now;
-  state->excess_at = now;
-  return (double)(now - state->excess_from) * period > EXCESS_MAX - period / 2;
+static bool persists(ethd__core *core, double period) {
+  uint64_t now = core->counters.ticks + 1;
+  if (core->excess_at == 0 || (double)(now - core->excess_at) * period > RESPITE) core->excess_from = now;
+  core->excess_at = now;
+  return (double)(now - core->excess_from) * period > EXCESS_MAX - period / 2;
 }
 
-double ethd__passivity(const ethd__tick *t, ethd__slot *slot, const ethd_contact *c, double wall, double brake) {
-  ethd__state *state = t->state;
-  const double bound = t->plan->setup.limits.energy, period = t->plan->setup.period;
+double ethd__passivity(const ethd__core_tick *t, ethd__slot *slot, const ethd_contact *c, double wall, double brake) {
+  ethd__core *core = t->state;
+  const double bound = t->plan->energy, period = t->plan->period;
   if (!slot->watched) begin(t, slot, -c->d_re, wall);
   observe(slot, c);
   slot->watched = true;
@@ -81,9 +81,9 @@ double ethd__passivity(const ethd__tick *t, ethd__slot *slot, const ethd_contact
   if (wall + added > 0) added = -wall;
   slot->force[1] = slot->force[0];
   slot->force[0] = wall + added + brake;
-  state->given = fmax(given, 0);
-  state->given_at = state->counters.ticks;
-  if (slot->giving) ethd__note(state, ETHD_FAULT_ENERGY);
-  if (given > 2 * bound && persists(state, period)) ethd__note_grave(state, ETHD_FAULT_ENERGY);
+  core->given = fmax(given, 0);
+  core->given_at = core->counters.ticks;
+  if (slot->giving) ethd__note(core, ETHD_FAULT_ENERGY);
+  if (given > 2 * bound && persists(core, period)) ethd__note_grave(core, ETHD_FAULT_ENERGY);
   return added;
 }

@@ -1,20 +1,17 @@
-/* What is touched, and what that does to the torque.
+/* What is touched, and what that does to the command.
 
-   1. The candidates are the touches near the ring and those that continue a contact, deepest first (candidates.c).
-   2. Contacts that no candidate continues end.
-   3. Each candidate that could count, up to ETHD_CONTACTS_MAX of them, gets a slot: that of its contact, a free one, or
+   1. Contacts that no candidate continues end.
+   2. Each candidate that could count, up to ETHD_CONTACTS_MAX of them, gets a slot: that of its contact, a free one, or
       the shallowest contact's.
-   4. The transition law rules: share of tracking (beta), share of the wall, offset, damping, feed and shift. A contact
-      that doesn't count by its ruling gives its slot back.
-   5. The contact law gives the force of the wall at its offset, to which the passivity observer may add damping.
-   6. The forces of all contacts are added up. The smallest beta counts, with the shift of its contact. */
-#include "control/contacts.h"
+   3. The transition law rules: share of tracking (beta), share of the wall, offset, damping, feed, lead and speed. A
+      contact that doesn't count by its ruling gives its slot back.
+   4. The contact law gives the force of the wall at its offset, to which the passivity observer may add damping.
+   5. The forces of all contacts are added up. The smallest beta counts, with the lead of its contact. */
+#include "core/contacts.h"
 
-#include "control/candidates.h"
-#include "control/facts.h"
-#include "control/fence.h"
-#include "control/passivity.h"
-#include "control/rows.h"
+#include "core/fence.h"
+#include "core/passivity.h"
+#include "core/rows.h"
 
 /* ---- one contact ---- */
 
@@ -28,22 +25,21 @@ typedef struct contact_work {
 } contact_work;
 
 /* Measures the contact at a candidate, all but its age. */
-static ethd_contact measure(const ethd__tick *t, const ethd__candidate *k) {
-  const ethd_touch *touch = &k->touch;
-  const ethd_setup *setup = &t->plan->setup;
+static ethd_contact measure(const ethd__core_tick *t, const ethd__candidate *k) {
+  const ethd__core_plan *plan = t->plan;
   ethd_contact c;
   memset(&c, 0, sizeof c);
-  double along = ethd_vec_dot(touch->n, ethd_vec_sub(touch->point, t->finger.x));
-  c.point = touch->point;
-  c.n = touch->n;
-  c.d_re = touch->distance - setup->ring_radius;
-  c.d_fe = along - setup->finger_radius;
-  c.d_fr = along - setup->ring_radius;
-  c.v = ethd_vec_dot(touch->n, ethd_vec_sub(t->ring.v, k->v));
-  c.v_f = ethd_vec_dot(touch->n, ethd_vec_sub(t->finger.v, k->v));
-  c.d_beta = t->plan->d_beta;
+  double along = ethd_vec3_dot(k->n, ethd_vec3_sub(k->point, t->finger));
+  c.point = k->point;
+  c.n = k->n;
+  c.d_re = k->distance - plan->radius;
+  c.d_fe = along - plan->finger_radius;
+  c.d_fr = along - plan->radius;
+  c.v = ethd_vec3_dot(k->n, ethd_vec3_sub(t->v, k->v));
+  c.v_f = ethd_vec3_dot(k->n, ethd_vec3_sub(t->finger_v, k->v));
+  c.d_beta = plan->d_beta;
   c.period = t->dt;
-  c.object = touch->object;
+  c.object = k->object;
   c.body = k->place;
   return c;
 }
@@ -51,22 +47,22 @@ static ethd_contact measure(const ethd__tick *t, const ethd__candidate *k) {
 /* NaN fails every comparison. */
 static bool ruling_is_good(const ethd_ruling *r) {
   return r->beta >= 0 && r->beta <= 1 && r->share >= 0 && r->share <= 1 && r->damping >= 0 && isfinite(r->damping) &&
-         isfinite(r->offset) && isfinite(r->feed) && isfinite(r->shift.x) && isfinite(r->shift.y) &&
+         isfinite(r->offset) && isfinite(r->feed) && isfinite(r->lead) && r->speed > -(double)INFINITY &&
          isfinite(r->argument);
 }
 
 /* Asks the transition law who rules. */
-static bool rule(const ethd__tick *t, contact_work *w) {
-  const ethd_setup *setup = &t->plan->setup;
+static bool rule(const ethd__core_tick *t, contact_work *w) {
   ethd_ruling *r = &w->ruling;
   if (t->plan->range) {
-    ethd__facts(t, &w->contact, &w->facts);
+    t->facts(t->front, &w->contact, &w->facts);
     w->contact.facts = &w->facts;
   }
   memset(r, 0, sizeof *r);
   r->beta = 1;
+  r->speed = (double)INFINITY;
   r->argument = w->contact.d_fe;
-  ethd_status status = t->plan->rule(setup->transition_p, w->slot->transition.at, &w->contact, r);
+  ethd_status status = t->plan->rule(t->plan->transition_p, w->slot->transition.at, &w->contact, r);
   return ethd__law_is_good(t->state, ETHD_TRANSITION, status, ruling_is_good(r));
 }
 
@@ -80,29 +76,28 @@ static bool entering(ethd__slot *slot, double v, double h) {
 }
 
 /* Force of the (offset) wall along n, N; never attractive. */
-static bool wall(const ethd__tick *t, const contact_work *w, double *force) {
+static bool wall(const ethd__core_tick *t, const contact_work *w, double *force) {
   const ethd_contact *c = &w->contact;
-  const double *p = ethd__contact_p(t->plan, c->body, w->candidate->touch.material);
-  bool in = entering(w->slot, c->v, t->plan->setup.v_hysteresis);
+  bool in = entering(w->slot, c->v, t->plan->v_hysteresis);
   *force = 0;
   if (!(w->ruling.share > 0)) return true;
   double gap = c->d_re + w->ruling.offset;
-  ethd_status status = t->plan->push(p, w->slot->contact.at, gap, c->v, in, force);
+  ethd_status status = t->plan->push(w->candidate->contact_p, w->slot->contact.at, gap, c->v, in, force);
   if (!ethd__law_is_good(t->state, ETHD_CONTACT, status, isfinite(*force))) return false;
   *force = *force < 0 ? w->ruling.share * *force : 0;
   return true;
 }
 
-static void add_force(double to[2], double force, ethd_vec n) {
-  to[0] += force * n.x;
-  to[1] += force * n.y;
+/* Returns the force that holds the speed to what the ruling allows, N along n, never pulling into the object. */
+static double hold_speed(const ethd__core_tick *t, const ethd_contact *c, double speed) {
+  return c->v > speed ? -t->plan->brake * (c->v - speed) : 0;
 }
 
 /* Adds a contact to what the other contacts gave. */
-static void add(ethd__tick *t, const contact_work *w, double force) {
+static void add(ethd__core_tick *t, const contact_work *w, double force) {
   const ethd_contact *c = &w->contact;
   const ethd_ruling *r = &w->ruling;
-  ethd_trace *out = t->trace;
+  ethd__touched *out = &t->touched;
   if (out->contacts++ == 0) { /* the deepest comes first */
     out->object = c->object;
     out->body = c->body;
@@ -114,18 +109,23 @@ static void add(ethd__tick *t, const contact_work *w, double force) {
   }
   if (out->contacts == 1 || r->beta < out->beta) {
     out->beta = r->beta;
-    t->shift = r->shift;
+    out->lead = ethd_vec3_scale(r->lead, c->n);
   }
-  add_force(out->fe, force + r->feed, c->n);
-  add_force(out->fd, -r->damping * c->v, c->n);
+  double braking = -r->damping * c->v;
+  if (r->speed < (double)INFINITY) {
+    out->bound[out->bounds++] = (struct ethd__bound){c->n, r->speed + ethd_vec3_dot(c->n, w->candidate->v)};
+    braking += hold_speed(t, c, r->speed);
+  }
+  out->fe = ethd_vec3_add(out->fe, ethd_vec3_scale(force + r->feed, c->n));
+  out->fd = ethd_vec3_add(out->fd, ethd_vec3_scale(braking, c->n));
 }
 
 /* Writes into the slot whose surface it is, before a law can fail. */
 static void claim(ethd__slot *slot, const ethd__candidate *k) {
-  slot->object = k->touch.object;
+  slot->object = k->object;
   slot->place = k->place;
   slot->point = k->local;
-  slot->side = k->touch.side;
+  slot->side = k->side;
 }
 
 static void change_state(ethd__slot *slot, int32_t state) {
@@ -149,12 +149,12 @@ static double bare_force(const ethd_ruling *r, double v) {
 }
 
 /* Runs the laws on one contact. False: one of them failed. */
-static bool work_out(ethd__tick *t, contact_work *w) {
+static bool work_out(ethd__core_tick *t, contact_work *w) {
   ethd__slot *slot = w->slot;
   ethd_contact *c = &w->contact;
   const ethd_ruling *r = &w->ruling;
   double force;
-  c->age = (double)slot->periods * t->plan->setup.period;
+  c->age = (double)slot->periods * t->plan->period;
   claim(slot, w->candidate);
   if (!rule(t, w)) return false;
   if (!(c->d_re < t->near || r->argument <= c->d_beta || r->state != ETHD_TRANSPARENT)) {
@@ -166,56 +166,56 @@ static bool work_out(ethd__tick *t, contact_work *w) {
   slot->watched &= t->plan->watches_energy;
   if (t->plan->watches_energy) force += ethd__passivity(t, slot, c, force, bare_force(r, c->v));
   change_state(slot, r->state);
-  if (t->state == t->scratch) tell(slot, c, r);
-  slot->periods += (int64_t)rint(c->period / t->plan->setup.period); /* whole periods, so that the age doesn't drift */
+  if (t->keeps) tell(slot, c, r);
+  slot->periods += (int64_t)rint(c->period / t->plan->period); /* whole periods, so that the age doesn't drift */
   add(t, w, force);
   return true;
 }
 
 /* ---- slots ---- */
 
-static ethd__slot *free_slot(const ethd__tick *t) {
-  const ethd_setup *setup = &t->plan->setup;
+static ethd__slot *free_slot(const ethd__core_tick *t) {
+  const ethd__core_plan *plan = t->plan;
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
     ethd__slot *slot = &t->state->slots[i];
     if (t->state->live & 1u << i) continue;
     memset(slot, 0, sizeof *slot);
-    ethd__block_reset(t->plan, &setup->transition->law, setup->transition_p, &slot->transition);
-    ethd__block_reset(t->plan, &setup->contact->law, setup->contact_p, &slot->contact);
+    ethd__block_reset(plan, &plan->transition->law, plan->transition_p, &slot->transition);
+    ethd__block_reset(plan, &plan->contact->law, plan->contact_p, &slot->contact);
     return slot;
   }
   return NULL;
 }
 
 /* Ends the contacts that no touch continues. */
-static void end_lost(ethd__state *state, const ethd__candidates *c) {
+static void end_lost(ethd__core *core, const ethd__candidates *c) {
   unsigned lost = c->live;
   for (int k = 0; k < c->count; k++)
     if (c->at[k].slot >= 0) lost &= ~(1u << c->at[k].slot);
   for (; lost; lost &= lost - 1) {
-    ethd__slot *slot = &state->slots[__builtin_ctz(lost)];
-    ethd__slot_free(state, slot);
-    if (slot->state != ETHD_TRANSPARENT) state->counters.contacts_lost++;
+    ethd__slot *slot = &core->slots[__builtin_ctz(lost)];
+    ethd__slot_free(core, slot);
+    if (slot->state != ETHD_TRANSPARENT) core->counters.contacts_lost++;
   }
 }
 
-static void no_room(ethd__tick *t, int count) {
-  t->trace->overflow += count;
+static void no_room(ethd__core_tick *t, int count) {
+  t->touched.overflow += count;
   t->state->counters.contacts_lost += (uint64_t)count;
 }
 
 /* Frees the slot of the shallowest contact, which comes after candidate k in the list. */
-static void make_room(ethd__state *state, ethd__candidates *c, int k) {
+static void make_room(ethd__core *core, ethd__candidates *c, int k) {
   /* unreachable: the loop's end, for fewer than all slots belong to candidates up to k */
   for (int i = c->count - 1; i > k; i--) {
     if (c->at[i].slot < 0) continue;
-    ethd__slot_free(state, &state->slots[c->at[i].slot]);
+    ethd__slot_free(core, &core->slots[c->at[i].slot]);
     c->at[i].slot = -1;
     return;
   }
 }
 
-static ethd__slot *new_slot(const ethd__tick *t, ethd__candidates *c, int k) {
+static ethd__slot *new_slot(const ethd__core_tick *t, ethd__candidates *c, int k) {
   ethd__slot *slot = free_slot(t);
   if (slot) return slot;
   make_room(t->state, c, k);
@@ -224,23 +224,17 @@ static ethd__slot *new_slot(const ethd__tick *t, ethd__candidates *c, int k) {
 
 /* ---- all of them ---- */
 
-static void begin(ethd__tick *t) {
-  ethd_trace *out = t->trace;
-  out->queried = out->contacts = out->overflow = out->body = out->state = 0;
+bool ethd__contacts_begin(ethd__core_tick *t) {
+  const ethd__core_plan *plan = t->plan;
+  ethd__touched *out = &t->touched;
+  double range;
+  memset(out, 0, offsetof(ethd__touched, bound));
   out->object = -1;
   out->beta = 1;
-  out->fe[0] = out->fe[1] = out->fd[0] = out->fd[1] = out->eps = 0;
   out->d_re = out->d_fe = out->v_n = (double)NAN;
-  t->shift = (ethd_vec){0, 0};
-}
-
-/* Sets t->near. False: the law failed. */
-static bool look_ahead(ethd__tick *t) {
-  const ethd__plan *plan = t->plan;
-  double range;
   t->near = plan->d_beta;
   if (!plan->range) return true;
-  ethd_status status = ethd__fence_range(plan, t->state, ethd_vec_norm(t->ring.v), &range);
+  ethd_status status = ethd__fence_range(plan, t->state, ethd_vec3_norm(t->v), &range);
   if (range > plan->d_beta && range < (double)INFINITY) t->near = range;
   return ethd__law_is_good(t->state, ETHD_TRANSITION, status, true);
 }
@@ -250,7 +244,7 @@ static bool could_count(const ethd_contact *c, double near, const ethd__slot *sl
 }
 
 /* Takes the candidates from the deepest to the shallowest, so that the shallowest go when there is no room. */
-static bool work_out_all(ethd__tick *t, ethd__candidates *c) {
+static bool work_out_all(ethd__core_tick *t, ethd__candidates *c) {
   for (int k = 0, taken = 0; k < c->count; k++) {
     contact_work w;
     w.candidate = &c->at[k];
@@ -269,15 +263,9 @@ static bool work_out_all(ethd__tick *t, ethd__candidates *c) {
   return true;
 }
 
-bool ethd__contacts(ethd__tick *t) {
-  ethd__candidates c;
-  begin(t);
-  if (!t->plan->places) return true;
-  if (!look_ahead(t)) return false;
-  ethd__candidates_collect(t, &c);
-  t->trace->queried = c.queried;
-  t->state->counters.queried += (uint64_t)c.queried;
-  end_lost(t->state, &c);
-  no_room(t, c.overflow);
-  return work_out_all(t, &c);
+bool ethd__contacts(ethd__core_tick *t, ethd__candidates *c) {
+  ethd__candidates_sort(t->state, c);
+  end_lost(t->state, c);
+  no_room(t, c->overflow);
+  return work_out_all(t, c);
 }

@@ -1,4 +1,4 @@
-#include "control/fence.h"
+#include "core/fence.h"
 
 #include <stddef.h>
 
@@ -107,35 +107,35 @@ void ethd__fence_reset(const ethd_law *law, const double *p, ethd__law_block *b)
 }
 
 /* What `adopt` did beside its job fails the step after it, as with a reset. */
-void ethd__fence_adopt(const ethd__plan *plan, ethd__law_block *b, const ethd_past *past) {
-  const ethd_transition_law *law = plan->setup.transition;
+void ethd__fence_adopt(const ethd__core_plan *plan, ethd__law_block *b, const ethd_past *past) {
+  const ethd_transition_law *law = plan->transition;
   if (!(plan->foreign & 1 << ETHD_TRANSITION)) {
-    law->adopt(plan->setup.transition_p, b->at, past);
+    law->adopt(plan->transition_p, b->at, past);
     return;
   }
   const int64_t before = b->failed;
   call c = enter(&law->law, b);
-  law->adopt(plan->setup.transition_p, b->at, past);
+  law->adopt(plan->transition_p, b->at, past);
   const ethd_status found = leave(&c, ETHD_OK);
   b->failed = found ? found : before;
 }
 
 /* `range` has no state, so only the processor is checked. Any block can say that it runs. */
-ethd_status ethd__fence_range(const ethd__plan *plan, ethd__state *s, double speed, double *range) {
+ethd_status ethd__fence_range(const ethd__core_plan *plan, ethd__core *s, double speed, double *range) {
   ethd__law_block *b = &s->slots[0].transition;
   if (!(plan->foreign & 1 << ETHD_TRANSITION)) {
-    *range = plan->range(plan->setup.transition_p, speed);
+    *range = plan->range(plan->transition_p, speed);
     return ETHD_OK;
   }
-  const call c = enter(&plan->setup.transition->law, b);
-  *range = plan->range(plan->setup.transition_p, speed);
+  const call c = enter(&plan->transition->law, b);
+  *range = plan->range(plan->transition_p, speed);
   const bool kept = control_is(control_now(), c.before);
   if (!kept) control_set(c.before);
   __atomic_store_n(&b->running, 0, __ATOMIC_RELEASE);
   return kept ? ETHD_OK : ETHD_E_FENV;
 }
 
-const ethd_law *ethd__fence_runs(const ethd__state *s) {
+const ethd_law *ethd__fence_runs(const ethd__core *s) {
   for (int i = -1; i < 2 * ETHD_CONTACTS_MAX; i++) {
     const ethd__law_block *b = &s->tracking;
     if (i >= 0) b = i % 2 ? &s->slots[i / 2].contact : &s->slots[i / 2].transition;
@@ -170,13 +170,13 @@ bool ethd__law_is_foreign(const ethd_law *law) {
   return true;
 }
 
-void ethd__fence_prepare(ethd__plan *plan) {
-  const ethd_setup *s = &plan->setup;
-  bool foreign[] = {ethd__law_is_foreign(&s->tracking->law), ethd__law_is_foreign(&s->contact->law),
-                    ethd__law_is_foreign(&s->transition->law)};
+void ethd__fence_prepare(ethd__core_plan *plan) {
+  bool foreign[] = {ethd__law_is_foreign(&plan->tracking->law), ethd__law_is_foreign(&plan->contact->law),
+                    ethd__law_is_foreign(&plan->transition->law)};
   plan->foreign = foreign[ETHD_TRACKING] << ETHD_TRACKING | foreign[ETHD_CONTACT] << ETHD_CONTACT |
                   foreign[ETHD_TRANSITION] << ETHD_TRANSITION;
-  plan->track = foreign[ETHD_TRACKING] ? track : s->tracking->step;
-  plan->push = foreign[ETHD_CONTACT] ? push : s->contact->step;
-  plan->rule = foreign[ETHD_TRANSITION] ? rule : s->transition->step;
+  plan->track = foreign[ETHD_TRACKING] ? track : plan->tracking->step;
+  plan->push = foreign[ETHD_CONTACT] ? push : plan->contact->step;
+  plan->rule = foreign[ETHD_TRANSITION] ? rule : plan->transition->step;
+  plan->range = ETHD_LAW_HAS(plan->transition, range) ? plan->transition->range : NULL;
 }

@@ -3,22 +3,22 @@
    (ETHD_E_FENCE, ETHD_E_FENV), so the value of row LAW names the kind of law and what it did, and is undone.
 
    A plan holds the steps that its ticks call: the laws' own, or the fenced ones. So built-in laws cost nothing more. */
-#ifndef ETHD__CONTROL_FENCE_H
-#define ETHD__CONTROL_FENCE_H
+#ifndef ETHD__CORE_FENCE_H
+#define ETHD__CORE_FENCE_H
 
-#include "control/state.h"
+#include "core/state.h"
 
 /* Returns true for a law that isn't one of ethd_laws. [main] */
 bool ethd__law_is_foreign(const ethd_law *law);
 
-/* Fills plan->foreign and the plan's three steps (track, push, rule) from its setup. [main] */
-void ethd__fence_prepare(ethd__plan *plan);
+/* Fills plan->foreign and the plan's steps (track, push, rule, range) from its laws. [main] */
+void ethd__fence_prepare(ethd__core_plan *plan);
 
 /* Fences the block and lets the law fill it. [rt] */
 void ethd__fence_reset(const ethd_law *law, const double *p, ethd__law_block *block) ETHD_RT;
 
 /* Zeroes the block, then lets the law fill it. [rt] */
-static inline void ethd__block_reset(const ethd__plan *plan, const ethd_law *law, const double *p,
+static inline void ethd__block_reset(const ethd__core_plan *plan, const ethd_law *law, const double *p,
                                      ethd__law_block *block) ETHD_RT {
   memset(block->at, 0, sizeof block->at);
   if (plan->foreign & 1 << law->kind)
@@ -28,12 +28,12 @@ static inline void ethd__block_reset(const ethd__plan *plan, const ethd_law *law
 }
 
 /* Hands a contact over to the plan's transition law, which has `adopt`. [rt] */
-void ethd__fence_adopt(const ethd__plan *plan, ethd__law_block *block, const ethd_past *past) ETHD_RT;
+void ethd__fence_adopt(const ethd__core_plan *plan, ethd__law_block *block, const ethd_past *past) ETHD_RT;
 
 /* Asks the plan's transition law, which has `range`, how far it looks ahead, m. ETHD_E_FENV. [rt] */
-ethd_status ethd__fence_range(const ethd__plan *plan, ethd__state *state, double speed, double *range) ETHD_RT;
+ethd_status ethd__fence_range(const ethd__core_plan *plan, ethd__core *core, double speed, double *range) ETHD_RT;
 
 /* Returns the foreign law whose code runs on this state, NULL if none does. [any] */
-const ethd_law *ethd__fence_runs(const ethd__state *state) ETHD_RT;
+const ethd_law *ethd__fence_runs(const ethd__core *core) ETHD_RT;
 
 #endif
