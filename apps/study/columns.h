@@ -3,6 +3,7 @@
 #ifndef ETHD__APPS_STUDY_COLUMNS_H
 #define ETHD__APPS_STUDY_COLUMNS_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 #include "study/protocol.h"
@@ -32,13 +33,29 @@ typedef struct ethd__table_scope {
   const ethd_setup *setup; /* a simulation's, which knows the gains' units; NULL: the tables are a session's */
 } ethd__table_scope;
 
-/* Writes rows of a Markdown table: column, unit, meaning. */
-void ethd__table_describe(FILE *file, ethd__study_table table, const ethd__table_scope *scope);
+/* A column. levels: "word=what it means|..", NULL where it has none. */
+typedef struct ethd__column {
+  const char *name, *unit, *meaning, *levels;
+} ethd__column;
 
-/* Writes a JSON object: Description, Units and Levels of each column, as BIDS's sidecars have them. */
-void ethd__table_sidecar(FILE *file, ethd__study_table table, const ethd__table_scope *scope);
+typedef struct ethd__columns {
+  const ethd__column *row;
+  size_t count;
+} ethd__columns;
 
-/* Writes dataset_description.json. */
-void ethd__dataset_describe(FILE *file, const ethd__protocol *protocol);
+/* Whether the table is a simulation's taps, which have more columns. */
+bool ethd__is_simulated(ethd__study_table table, const ethd__table_scope *scope);
+
+/* The columns of a table, and those of a simulation before them. */
+ethd__columns ethd__columns_of(ethd__study_table table);
+ethd__columns ethd__columns_first(ethd__study_table table, const ethd__table_scope *scope);
+
+/* Calls `each` for the questions whose answers stand in the table, behind its columns. */
+void ethd__columns_asked(ethd__study_table table, const ethd__protocol *protocol, FILE *file,
+                         void (*each)(FILE *file, const char *column, const ethd__question *question));
+
+/* Returns a gain of the grid by its name, "section.key"; NULL where the configuration's own laws don't have it, because
+   it belongs to another strategy. */
+const ethd_param *ethd__gain_of(const ethd_setup *setup, const char *name, ethd_setup_key *key);
 
 #endif

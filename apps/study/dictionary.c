@@ -2,8 +2,10 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "study/columns.h"
+#include "cli/json.h"
+#include "ethd/ethd.h"
 
 #define QUESTION_1 "When did you feel the touch, beside the moment at which the circle reached the wall on the screen?"
 #define ANSWERS_1 "well before | a little before | just then | a little after | well after"
@@ -65,6 +67,41 @@ static const char ticks[] =
     "scene.scene and events.csv\n"
     "say how to repeat them: `ethd-replay --verify taps/P01-03-004` compares every field bit for bit.\n";
 
+/* ---- for people: README.md ---- */
+
+static void describe_gains(FILE *file, const ethd__table_scope *scope) {
+  for (size_t i = 0; i < scope->protocol->axis_count; i++) {
+    ethd_setup_key key;
+    const ethd_param *gain = ethd__gain_of(scope->setup, scope->protocol->axes[i].key, &key);
+    fprintf(file, "| %s | %s | this gain at the point%s%s |\n", scope->protocol->axes[i].key, gain ? gain->unit : "",
+            gain ? ": " : "", gain ? gain->brief : "");
+  }
+}
+
+static void describe(FILE *file, ethd__columns columns) {
+  for (size_t i = 0; i < columns.count; i++)
+    fprintf(file, "| %s | %s | %s |\n", columns.row[i].name, columns.row[i].unit, columns.row[i].meaning);
+}
+
+static void describe_question(FILE *file, const char *column, const ethd__question *q) {
+  char words[256];
+  fprintf(file, "| %s | | %s%s", column, q->text, ethd__question_is_text(q) ? " In words." : "");
+  for (int k = 1; k <= (int)ethd__answer_count(q); k++) {
+    ethd__answer_words(q, k, words, sizeof words);
+    fprintf(file, "%s %d %s", k > 1 ? ";" : "", k, words);
+  }
+  fputs(" |\n", file);
+}
+
+/* Writes rows of a Markdown table: column, unit, meaning. */
+static void describe_table(FILE *file, ethd__study_table table, const ethd__table_scope *scope) {
+  fputs("| column | unit | meaning |\n|---|---|---|\n", file);
+  describe(file, ethd__columns_first(table, scope));
+  describe(file, ethd__columns_of(table));
+  if (ethd__is_simulated(table, scope)) describe_gains(file, scope);
+  ethd__columns_asked(table, scope->protocol, file, describe_question);
+}
+
 char *ethd__dictionary(const ethd__table_scope *scope) {
   char *text = NULL;
   size_t length;
@@ -73,7 +110,7 @@ char *ethd__dictionary(const ethd__table_scope *scope) {
   fputs(files, file);
   for (int i = 0; i < ETHD_TABLES; i++) {
     fprintf(file, "## %s.csv\n\n", ethd__table_names[i]);
-    ethd__table_describe(file, (ethd__study_table)i, scope);
+    describe_table(file, (ethd__study_table)i, scope);
     putc('\n', file);
     if (i == ETHD_TABLE_TAPS) fputs(behind, file);
   }
@@ -82,4 +119,105 @@ char *ethd__dictionary(const ethd__table_scope *scope) {
   if (!fclose(file) && !failed) return text;
   free(text);
   return NULL;
+}
+
+/* ---- for programs: JSON ---- */
+
+static void put_levels(FILE *file, const char *levels) {
+  fputs(",\n    \"Levels\": {", file);
+  for (const char *at = levels; *at;) {
+    size_t n = strcspn(at, "|"), name = strcspn(at, "=");
+    fputs(at == levels ? "\n      " : ",\n      ", file);
+    ethd__json_string(file, at, name);
+    fputs(": ", file);
+    ethd__json_string(file, at + name + 1, n - name - 1);
+    at += n + (at[n] == '|');
+  }
+  fputs("\n    }", file);
+}
+
+static void put_question(FILE *file, const char *column, const ethd__question *q) {
+  char words[256];
+  fprintf(file, ",\n  \"%s\": {\n    \"Description\": ", column);
+  ethd__json_word(file, q->text);
+  if (ethd__question_is_text(q)) {
+    fputs("\n  }", file);
+    return;
+  }
+  fputs(",\n    \"Levels\": {", file);
+  for (int k = 1; k <= (int)ethd__answer_count(q); k++) {
+    ethd__answer_words(q, k, words, sizeof words);
+    fprintf(file, "%s\n      \"%d\": ", k > 1 ? "," : "", k);
+    ethd__json_word(file, words);
+  }
+  fputs("\n    }\n  }", file);
+}
+
+/* Prints the words that a study file lists for a column, each with its meaning between `before` and `after`. */
+static void put_words(FILE *file, const ethd__word_list *list, const char *before, const char *after) {
+  fputs(",\n    \"Levels\": {", file);
+  for (size_t i = 0; i < list->count; i++) {
+    const char *word = list->word[i];
+    bool low = !strcmp(word, "low"), high = !strcmp(word, "high");
+    fprintf(file, "%s\n      \"%s\": \"%s%s%s\"", i ? "," : "", word, before,
+            low    ? "about 0.2"
+            : high ? "about 0.4"
+                   : word,
+            after);
+  }
+  fputs("\n    }", file);
+}
+
+static void put_column(FILE *file, const ethd__column *c, const ethd__protocol *p, const char *between) {
+  fprintf(file, "%s\n  \"%s\": {\n    \"Description\": ", between, c->name);
+  ethd__json_word(file, c->meaning);
+  if (*c->unit) {
+    fputs(",\n    \"Units\": ", file);
+    ethd__json_word(file, c->unit);
+  }
+  if (c->levels) put_levels(file, c->levels);
+  if (!strcmp(c->name, "transition")) put_words(file, &p->strategies, "the transition law ", "");
+  if (!strcmp(c->name, "speed")) put_words(file, &p->speeds, "", " m/s");
+  fputs("\n  }", file);
+}
+
+static void put_gain(FILE *file, const ethd__axis *axis, const ethd_setup *setup) {
+  ethd_setup_key key;
+  const ethd_param *gain = ethd__gain_of(setup, axis->key, &key);
+  char meaning[2 * ETHD_BRIEF_MAX];
+  snprintf(meaning, sizeof meaning, "this gain at the point%s%s", gain ? ": " : "", gain ? gain->brief : "");
+  fputs(",\n  ", file);
+  ethd__json_word(file, axis->key);
+  fputs(": {\n    \"Description\": ", file);
+  ethd__json_word(file, meaning);
+  if (gain) {
+    fputs(",\n    \"Units\": ", file);
+    ethd__json_word(file, gain->unit);
+  }
+  put_words(file, &axis->values, "the value ", "");
+  fputs("\n  }", file);
+}
+
+void ethd__table_sidecar(FILE *file, ethd__study_table table, const ethd__table_scope *scope) {
+  const ethd__protocol *p = scope->protocol;
+  const ethd__columns part[2] = {ethd__columns_first(table, scope), ethd__columns_of(table)};
+  const char *between = "";
+  putc('{', file);
+  for (int k = 0; k < 2; k++)
+    for (size_t i = 0; i < part[k].count; i++, between = ",") put_column(file, &part[k].row[i], p, between);
+  for (size_t i = 0; ethd__is_simulated(table, scope) && i < p->axis_count; i++)
+    put_gain(file, &p->axes[i], scope->setup);
+  ethd__columns_asked(table, p, file, put_question);
+  fputs("\n}\n", file);
+}
+
+void ethd__dataset_describe(FILE *file, const ethd__protocol *p) {
+  fputs("{\n  \"Name\": ", file);
+  ethd__json_word(file, p->name);
+  fputs(
+      ",\n  \"DatasetType\": \"raw\",\n  \"Description\": \"A tapping study with an encounter-type haptic display. The "
+      "sidecars follow BIDS; the tables are CSV.\",\n  \"GeneratedBy\": [{\"Name\": \"libethd\", \"Version\": ",
+      file);
+  ethd__json_word(file, ETHD_VERSION);
+  fputs("}]\n}\n", file);
 }
