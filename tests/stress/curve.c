@@ -3,6 +3,13 @@
 #include <complex.h>
 #include <math.h>
 
+const curve_estimator curve_estimators[CURVE_ESTIMATORS] = {{"difference", ETHD_VELOCITY_DIFFERENCE, 0},
+                                                            {"lowpass 20 Hz", ETHD_VELOCITY_LOWPASS, 20},
+                                                            {"lowpass 130 Hz", ETHD_VELOCITY_LOWPASS, 130},
+                                                            {"lowpass 400 Hz", ETHD_VELOCITY_LOWPASS, 400},
+                                                            {"lsq of 4", ETHD_VELOCITY_LSQ, 4},
+                                                            {"lsq of 8", ETHD_VELOCITY_LSQ, 8}};
+
 /* The slope of the least-squares line through n samples at times -i T. */
 static double complex line(double T, int n, double complex back) {
   double complex sum = 0, power = 1;

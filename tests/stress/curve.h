@@ -19,6 +19,15 @@ typedef struct ethd__curve {
   double value;                /* cutoff, Hz, or window, samples */
 } ethd__curve;
 
+/* The estimators that the tests of the boundary try. */
+enum { CURVE_ESTIMATORS = 6 };
+typedef struct curve_estimator {
+  const char *name;
+  ethd_velocity_method method;
+  double value; /* as in ethd__curve */
+} curve_estimator;
+extern const curve_estimator curve_estimators[CURVE_ESTIMATORS];
+
 /* Gives K, N/m, and B, Ns/m, on the boundary at 0 < th, rad. */
 void ethd__curve_at(const ethd__curve *curve, double th, double *stiffness, double *damping);
 

@@ -13,15 +13,6 @@
 #define PERIOD 0.001
 #define SWING 1e-6 /* m */
 
-static const struct {
-  const char *name;
-  ethd_velocity_method method;
-  double value;
-} estimators[] = {{"difference", ETHD_VELOCITY_DIFFERENCE, 0},
-                  {"lowpass 130 Hz", ETHD_VELOCITY_LOWPASS, 130},
-                  {"lowpass 400 Hz", ETHD_VELOCITY_LOWPASS, 400},
-                  {"lsq of 4", ETHD_VELOCITY_LSQ, 4}};
-
 /* A loop whose gains are on the boundary. */
 typedef struct boundary_loop {
   ethd__sampled_loop loop;
@@ -185,10 +176,10 @@ static void held(double stiffness, double damping, int delay) {
 }
 
 TEST(test_boundary) {
-  for (size_t i = 0; i < sizeof estimators / sizeof *estimators; i++)
+  for (int i = 0; i < CURVE_ESTIMATORS; i++)
     for (int n = 0; n <= 2; n++) {
-      ethd__curve curve = {MASS, PERIOD, n, estimators[i].method, estimators[i].value};
-      one_curve(&curve, estimators[i].name);
+      ethd__curve curve = {MASS, PERIOD, n, curve_estimators[i].method, curve_estimators[i].value};
+      one_curve(&curve, curve_estimators[i].name);
     }
   for (int n = 0; n <= 1; n++) {
     soft_rays("difference", ETHD_VELOCITY_DIFFERENCE, 0, n);

@@ -47,20 +47,12 @@ static double found(const ethd__curve *c, double about) {
 }
 
 TEST(test_braking) {
-  static const struct {
-    const char *name;
-    ethd_velocity_method method;
-    double value;
-  } estimators[] = {{"difference", ETHD_VELOCITY_DIFFERENCE, 0},
-                    {"lowpass 130 Hz", ETHD_VELOCITY_LOWPASS, 130},
-                    {"lowpass 20 Hz", ETHD_VELOCITY_LOWPASS, 20},
-                    {"lsq of 8", ETHD_VELOCITY_LSQ, 8}};
-  for (size_t i = 0; i < sizeof estimators / sizeof *estimators; i++)
+  for (int i = 0; i < CURVE_ESTIMATORS; i++)
     for (int n = 0; n <= 2; n++) {
-      ethd__curve c = {MASS, PERIOD, n, estimators[i].method, estimators[i].value};
+      ethd__curve c = {MASS, PERIOD, n, curve_estimators[i].method, curve_estimators[i].value};
       double k, largest;
       ethd__curve_at(&c, ethd__curve_end(&c), &k, &largest);
-      near(found(&c, largest), largest, 5e-3, "%s, n = %d: largest B_d", estimators[i].name, n);
+      near(found(&c, largest), largest, 5e-3, "%s, n = %d: largest B_d", curve_estimators[i].name, n);
       if (c.method == ETHD_VELOCITY_DIFFERENCE)
         near(found(&c, largest), 2 * MASS / PERIOD * tan(M_PI / (4 * (n + 1))), 5e-3,
              "the same by (2m/T) tan(pi/(4(n+1))), n = %d", n);
