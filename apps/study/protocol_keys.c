@@ -49,11 +49,21 @@ static ethd_status set_number(const ethd__entry *e, const key_row *row, void *at
   return read_value(e, row, "1", at);
 }
 
+/* Returns false unless the value is digits alone. Read as a double, 3e0 would be a count, and a seed would lose digits. */
+static bool read_digits(const ethd__entry *e, uint64_t *out) {
+  const char *text = e->key->value;
+  errno = 0;
+  *out = strtoumax(text, NULL, 10);
+  return *text && !text[strspn(text, "0123456789")] && !errno;
+}
+
 static ethd_status set_count(const ethd__entry *e, const key_row *row, void *at) {
-  double value = *(uint32_t *)at;
-  ethd_status status = read_value(e, row, ETHD_WHOLE, &value);
+  char allowed[64];
+  uint64_t value;
+  snprintf(allowed, sizeof allowed, "a whole number from %.10g to %.10g", row->min, row->max);
+  if (!read_digits(e, &value) || !ethd__is_within((double)value, row->min, row->max)) return found(e, allowed);
   *(uint32_t *)at = (uint32_t)value;
-  return status;
+  return ETHD_OK;
 }
 
 /* An enumeration. */
@@ -71,13 +81,9 @@ static ethd_status set_switch(const ethd__entry *e, const key_row *row, void *at
   return status;
 }
 
-/* A double can't hold all of them. */
 static ethd_status set_seed(const ethd__entry *e, const key_row *row, void *at) {
-  const char *text = e->key->value;
   (void)row;
-  errno = 0;
-  *(uint64_t *)at = strtoumax(text, NULL, 10);
-  return text[strspn(text, "0123456789")] || errno ? found(e, "a whole number from 0 to 2^64 - 1") : ETHD_OK;
+  return read_digits(e, at) ? ETHD_OK : found(e, "a whole number from 0 to 2^64 - 1");
 }
 
 static ethd_status set_text(const ethd__entry *e, const key_row *row, void *at) {

@@ -58,6 +58,15 @@ TEST(test_attempts_follow_the_taps_that_are_wanted) {
   ck_assert_uint_eq(protocol.attempts, 800);
   ethd__protocol_free(&protocol);
   ck_assert_int_eq(parse("[study]\ntaps = 60\nattempts = 59\n"), ETHD_E_RANGE);
+  static const char *const odd[] = {"3e0", "0x3", "3.0", "+3", "-3", "0", "100001", "18446744073709551616"};
+  for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
+    char text[64], words[ETHD_MESSAGE_MAX];
+    snprintf(text, sizeof text, "[study]\ntaps = %s\n", odd[i]);
+    snprintf(words, sizeof words, "x.study:2: study.taps: found \"%s\", a whole number from 1 to 100000 is allowed",
+             odd[i]);
+    ck_assert_int_eq(parse(text), ETHD_E_RANGE);
+    ck_assert_str_eq(message, words);
+  }
 }
 
 TEST(test_a_grid_has_an_end) {
