@@ -11,49 +11,63 @@
 
 /* ---- what SQL asks of the study ---- */
 
+/* The study, and the order of the participant that was asked for last; rows often come participant by participant. */
+typedef struct study_view {
+  const ethd__protocol *protocol;
+  int64_t participant; /* from 1; 0: none yet */
+  size_t count;
+  ethd__study_block blocks[ETHD_STUDY_BLOCKS];
+} study_view;
+
+static const ethd__protocol *protocol_of(sqlite3_context *context) {
+  return ((const study_view *)sqlite3_user_data(context))->protocol;
+}
+
 /* id(participant): P01, .. */
 static void sql_id(sqlite3_context *context, int count, sqlite3_value **value) {
   char id[ETHD_STUDY_ID_MAX];
   (void)count;
   if (sqlite3_value_type(*value) == SQLITE_NULL) return; /* an event of nobody */
-  ethd__participant_id(sqlite3_user_data(context), (uint32_t)sqlite3_value_int64(*value) - 1, id);
+  ethd__participant_id(protocol_of(context), (uint32_t)sqlite3_value_int64(*value) - 1, id);
   sqlite3_result_text(context, id, -1, SQLITE_TRANSIENT);
 }
 
 /* Returns a block by the arguments (participant, block); the first one where there is no such block. */
-static ethd__study_block block_of(const ethd__protocol *p, sqlite3_value **value) {
-  ethd__study_block blocks[ETHD_STUDY_BLOCKS];
-  size_t count = ethd__order_of(p, (uint32_t)sqlite3_value_int64(value[0]) - 1, blocks);
-  int64_t number = sqlite3_value_int64(value[1]);
-  return blocks[number >= 1 && (uint64_t)number <= count ? number - 1 : 0];
+static ethd__study_block block_of(sqlite3_context *context, sqlite3_value **value) {
+  study_view *view = sqlite3_user_data(context);
+  const int64_t participant = sqlite3_value_int64(value[0]), number = sqlite3_value_int64(value[1]);
+  if (participant != view->participant) {
+    view->count = ethd__order_of(view->protocol, (uint32_t)participant - 1, view->blocks);
+    view->participant = participant;
+  }
+  return view->blocks[number >= 1 && (uint64_t)number <= view->count ? number - 1 : 0];
 }
 
 static void sql_part(sqlite3_context *context, int count, sqlite3_value **value) {
   (void)count;
-  const bool training = block_of(sqlite3_user_data(context), value).training;
+  const bool training = block_of(context, value).training;
   sqlite3_result_text(context, training ? "training" : "test", -1, SQLITE_STATIC);
 }
 
 static void sql_transition(sqlite3_context *context, int count, sqlite3_value **value) {
-  const ethd__protocol *p = sqlite3_user_data(context);
   (void)count;
-  sqlite3_result_text(context, p->strategies.word[block_of(p, value).strategy], -1, SQLITE_STATIC);
+  sqlite3_result_text(context, protocol_of(context)->strategies.word[block_of(context, value).strategy], -1,
+                      SQLITE_STATIC);
 }
 
 static void sql_speed(sqlite3_context *context, int count, sqlite3_value **value) {
-  const ethd__protocol *p = sqlite3_user_data(context);
   (void)count;
-  sqlite3_result_text(context, p->speeds.word[block_of(p, value).speed], -1, SQLITE_STATIC);
+  sqlite3_result_text(context, protocol_of(context)->speeds.word[block_of(context, value).speed], -1, SQLITE_STATIC);
 }
 
 /* gain(point, axis) */
 static void sql_gain(sqlite3_context *context, int count, sqlite3_value **value) {
   size_t point = (size_t)sqlite3_value_int64(value[0]), axis = (size_t)sqlite3_value_int64(value[1]);
   (void)count;
-  sqlite3_result_text(context, ethd__protocol_value(sqlite3_user_data(context), point, axis), -1, SQLITE_STATIC);
+  sqlite3_result_text(context, ethd__protocol_value(protocol_of(context), point, axis), -1, SQLITE_STATIC);
 }
 
-static void add_functions(ethd__study_store *store, const ethd__protocol *p) {
+static void add_functions(ethd__study_store *store, study_view *view) {
   static const struct {
     const char *name;
     int arguments;
@@ -65,7 +79,7 @@ static void add_functions(ethd__study_store *store, const ethd__protocol *p) {
                    {"gain", 2, sql_gain}};
   for (size_t i = 0; i < sizeof functions / sizeof *functions; i++)
     if (sqlite3_create_function(store->db, functions[i].name, functions[i].arguments, SQLITE_UTF8 | SQLITE_DIRECTONLY,
-                                (void *)p, functions[i].call, NULL, NULL))
+                                view, functions[i].call, NULL, NULL))
       ethd__fail_memory();
 }
 
@@ -175,7 +189,8 @@ static ethd_status print_table(FILE *file, ethd__study_store *store, const ethd_
   select_rows[table](text, folder);
   if (fclose(text)) ethd__fail_memory();
   fprintf(file, "%s\n", header);
-  add_functions(store, &folder->protocol);
+  study_view view = {.protocol = &folder->protocol};
+  add_functions(store, &view);
   sqlite3_stmt *row = ethd__store_query(store, sql);
   while (ethd__store_next(row)) print_row(file, row);
   free(header);
