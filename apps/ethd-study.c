@@ -34,8 +34,9 @@ static const char doc[] =
     "participant; numbered answers or q1_answers = text), consent and "
     "instruction (\"[pages]\"), and whatever else the screen says in your language (\"[words]\": --words prints the "
     "phrases by their names).\n\n"
-    "With \"markers = HOST:PORT\" in [study] a session sends a line of text by UDP as each block and trial begins and "
-    "ends, at each trial's contact, and as a tap is accepted or rejected.\n\n"
+    "With --markers a session sends a line of text by UDP as each block and trial begins and ends, at each trial's "
+    "contact, and as a tap is accepted or rejected. The address is no part of the study: it can differ from station to "
+    "station, and from run to run.\n\n"
     "A participant who withdraws or is excluded stays on record with the reason, in participants.csv, and leaves the "
     "analysis, as one who aborted does. A valid tap that the experimenter rejects, at the screen or later by --reject, "
     "doesn't count either; another one is then due. taps.csv says which taps were accepted and rejected, events.csv "
@@ -69,6 +70,7 @@ enum {
   OPTION_MERGE,
   OPTION_SCREEN,
   OPTION_VIRTUAL,
+  OPTION_MARKERS,
   OPTION_PLAN,
   OPTION_WORDS,
   OPTION_EXPORT,
@@ -93,6 +95,8 @@ static const struct argp_option options[] = {
     {"screen", OPTION_SCREEN, "WxH", OPTION_ARG_OPTIONAL,
      "open a window, 1280x720 by default; the mouse is the finger, unless people's are", 0},
     {"virtual", OPTION_VIRTUAL, NULL, 0, "with people: run the device in lock-step, as fast as it goes", 0},
+    {"markers", OPTION_MARKERS, "HOST:PORT", 0,
+     "send a line of text by UDP for each event, for EEG and other recorders", 0},
     {"plan", OPTION_PLAN, NULL, 0, "print everybody's order and its balance, and end", 0},
     {"words", OPTION_WORDS, NULL, 0, "print the screen's words as a section [words], which a study file may replace",
      0},
@@ -179,6 +183,8 @@ static void check_options(struct argp_state *state) {
   if (arg.plugins && !arg.describe) argp_error(state, "--plugins needs --describe DIR");
   if (!arg.out && !arg.plan && (arg.study || arg.finger)) argp_error(state, "the study is taken from the folder");
   if ((arg.sharded || arg.shard.record) && !arg.simulate) argp_error(state, "--shard and --ticks need --simulate N");
+  if (arg.markers && (arg.simulate || arg.decision || !(arg.out || arg.resume) || stations))
+    argp_error(state, "--markers needs a session: --out DIR or --resume DIR");
   if (arg.width && (arg.ask || arg.simulate || arg.finger || arg.merge))
     argp_error(state, "--screen has a finger of its own, and keys: no --ask, --finger, --simulate, --merge");
   if (arg.simulate && (!arg.out || arg.ask || arg.first))
@@ -199,6 +205,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_SHARD: parse_shard(text); return 0;
   case OPTION_TICKS: arg.shard.record = true; return 0;
   case OPTION_SCREEN: parse_screen(text); return 0;
+  case OPTION_MARKERS: arg.markers = text; return 0;
   case OPTION_VIRTUAL: arg.is_virtual = true; return 0;
   case OPTION_MERGE: arg.merge = text; return 0;
   case OPTION_PLAN: arg.plan = true; return 0;

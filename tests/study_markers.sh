@@ -11,9 +11,8 @@ s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
 s.bind(("127.0.0.1", 0))
 s.settimeout(0.5)
 name, words, *command = sys.argv[1:]
-text = open(name).read().replace("[study]", f"[study]\nmarkers = 127.0.0.1:{s.getsockname()[1]}")
-open(name + ".ini", "w").write(text)
-run = subprocess.Popen([a.replace("STUDY", name + ".ini") for a in command], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+to = f"127.0.0.1:{s.getsockname()[1]}"
+run = subprocess.Popen([a.replace("STUDY", name).replace("TO", to) for a in command], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 while words and "tap " not in run.stdout.readline(): pass
 run.stdin.write(words.replace("|", "\n")), run.stdin.close()
 threading.Thread(target=run.stdout.read).start()
@@ -52,7 +51,7 @@ python3=${PYTHON:-python3}
 receive() { # NAME WORDS STUDY CHECKED OPTIONS..
   name=$1 words=$2 file=$3 checked=$4
   shift 4
-  "$python3" "$folder/receive.py" "$folder/$file" "$words" "$study" STUDY --out "$folder/$name" "$@" >"$folder/$name.txt" 2>"$folder/err" || fail "$name: $(cat "$folder/err")"
+  "$python3" "$folder/receive.py" "$folder/$file" "$words" "$study" STUDY --markers TO --out "$folder/$name" "$@" >"$folder/$name.txt" 2>"$folder/err" || fail "$name: $(cat "$folder/err")"
   "$python3" "$folder/judge.py" "$folder/$name.txt" "$folder/$name" "$checked" >"$folder/out" 2>&1 || fail "$name: $(tail -n 3 "$folder/out") $(head -n 8 "$folder/$name.txt")"
 }
 
@@ -66,19 +65,23 @@ printf '[study]\nparticipants = 1\nspeeds = 0.2\ntraining = 1\ntaps = 1\nattempt
 receive people '' people.study 0,0,0 --virtual --quiet
 
 # ---- nobody listens: the study goes on, and says so once ----
-printf '[study]\nparticipants = 1\ntraining = 0\ntaps = 2\nmarkers = 127.0.0.1:9\n' >"$folder/closed.study"
-grep -v markers "$folder/closed.study" >"$folder/without.study"
-"$study" "$folder/closed.study" --quiet --out "$folder/closed" >"$folder/out" 2>"$folder/err" || fail "a closed port: $(cat "$folder/err")"
-[ "$(wc -l <"$folder/err")" = 1 ] && grep -q ': study.markers: 127.0.0.1:9: Connection refused; markers are lost, and the study goes on' "$folder/err" ||
+printf '[study]\nparticipants = 1\ntraining = 0\ntaps = 2\n' >"$folder/closed.study"
+"$study" "$folder/closed.study" --markers 127.0.0.1:9 --quiet --out "$folder/closed" >"$folder/out" 2>"$folder/err" || fail "a closed port: $(cat "$folder/err")"
+[ "$(wc -l <"$folder/err")" = 1 ] && grep -q ': --markers: 127.0.0.1:9: Connection refused; markers are lost, and the study goes on' "$folder/err" ||
   fail "a closed port: $(cat "$folder/err")"
-"$study" "$folder/without.study" --quiet --out "$folder/without" >"$folder/out" 2>&1 || fail "without markers: $(cat "$folder/out")"
+"$study" "$folder/closed.study" --quiet --out "$folder/without" >"$folder/out" 2>&1 || fail "without markers: $(cat "$folder/out")"
 cmp "$folder/without/taps.csv" "$folder/closed/taps.csv" || fail "markers change the taps"
+
+# ---- the address is no part of the study: it is another one on resume, or none ----
+cmp "$folder/without/versions.txt" "$folder/closed/versions.txt" || fail "markers change the study's hash"
+for to in '' '--markers 127.0.0.1:10'; do
+  "$study" --resume "$folder/closed" $to >"$folder/out" 2>&1 || fail "resume with \"$to\": $(cat "$folder/out")"
+done
 
 # ---- places that can't be ----
 for to in nowhere 127.0.0.1: 127.0.0.1:0 127.0.0.1:70000 'no..where:5000'; do
-  printf '[study]\nmarkers = %s\n' "$to" >"$folder/bad.study"
-  "$study" "$folder/bad.study" --out "$folder/bad" >"$folder/out" 2>"$folder/err" </dev/null
-  [ $? = 2 ] && [ "$(wc -l <"$folder/err")" = 1 ] && grep -q "bad.study: study.markers: .*${to%%:*}" "$folder/err" && [ ! -e "$folder/bad" ] ||
+  "$study" "$folder/closed.study" --markers "$to" --out "$folder/bad" >"$folder/out" 2>"$folder/err" </dev/null
+  [ $? = 2 ] && [ "$(wc -l <"$folder/err")" = 1 ] && grep -q ": --markers: .*${to%%:*}" "$folder/err" && [ ! -e "$folder/bad" ] ||
     fail "markers to $to: $(cat "$folder/err")"
 done
 [ $failed = 0 ] && echo "$(cat "$folder/desk.txt" "$folder/people.txt" | wc -l) markers"

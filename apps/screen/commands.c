@@ -28,9 +28,6 @@ static void check_study(const ethd__study_options *o, const ethd__protocol *p, c
   ethd_status status = ethd__desk_open(p, loaded, o->finger, &desk, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   ethd__desk_close(&desk);
-  ethd__markers markers;
-  check(ethd__markers_open(p, &markers, message), message);
-  ethd__markers_close(&markers);
   bool people = p->hands == ETHD_HANDS_PEOPLE;
   if (people && (o->simulate || o->finger))
     ethd__fail(ETHD_EXIT_INPUT, "%s: hand.source: people have hands of their own; no --simulate, no --finger", p->path);
@@ -89,6 +86,7 @@ static char *going_on(const ethd__study_options *o, const char *folder) {
     fprintf(file, o->width == 1280 && o->height == 720 ? " --screen" : " --screen=%dx%d", o->width, o->height);
   if (o->ask) fputs(" --ask", file);
   if (o->is_virtual) fputs(" --virtual", file);
+  if (o->markers) fprintf(file, " --markers %s", o->markers);
   if (o->quiet) fputs(" --quiet", file);
   if (fclose(file)) ethd__fail_memory();
   return text;
@@ -151,6 +149,7 @@ int ethd__command_session(const ethd__study_options *o) {
                                       .height = o->height};
   bool over = false;
   ethd__container_keeper();
+  check(ethd__markers_open(o->markers, &place.markers, message), message);
   if (!o->resume) make_folder(o);
   ethd__place_open(&wanted, &place);
   ethd_status status = ethd__place_run(&place, &over, message);

@@ -8,7 +8,7 @@
 #include "study/stations.h"
 
 typedef struct ethd__study_options {
-  const char *study, *out, *resume, *finger, *merge, *export, *verify, *describe;
+  const char *study, *out, *resume, *finger, *merge, *export, *verify, *describe, *markers;
   const char *decision, *reason;             /* withdraw, exclude, include; of a tap: accept, reject */
   const char *word[ETHD_STUDY_STATIONS + 1]; /* that are no options: the study, or further stations */
   size_t word_count;

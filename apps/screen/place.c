@@ -78,9 +78,9 @@ void ethd__place_open(const ethd__place_options *o, ethd__screen_place *out) {
     ethd__fail(ETHD_EXIT_INPUT, "%s: holds a simulation; the same command with --simulate goes on", o->path);
   out->console = (ethd__console){.protocol = protocol, .ask = o->ask, .quiet = o->quiet};
   check(ethd__desk_open(protocol, &out->folder.loaded, out->folder.finger, &out->desk, message), message);
-  check(ethd__markers_open(protocol, &out->markers, message), message);
   check(ethd__sitting_open(&out->folder, hand_of(o, &out->folder), &out->sitting, message), message);
   choose(&out->sitting, protocol, o);
+  out->markers.protocol = protocol;
   out->desk.markers = out->sitting.markers = &out->markers;
   out->sitting.source = ethd__desk_source(&out->desk);
   (people ? ethd__hold_device : ethd__catch_interrupt)();

@@ -26,7 +26,7 @@ typedef struct ethd__screen_place {
   bool has_screen;
 } ethd__screen_place;
 
-/* Opens everything. Ends the program, before anything moves, on bad input or when device or window can't be opened. */
+/* Opens everything but the markers, which are open before a new folder is made. Ends the program, before anything moves, on bad input or when device or window can't be opened. */
 void ethd__place_open(const ethd__place_options *options, ethd__screen_place *out);
 
 /* Runs until all is done or somebody stops it; the device is at rest and closed when this returns. */

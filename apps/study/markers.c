@@ -11,11 +11,9 @@
 
 #define SECOND INT64_C(1000000000)
 
-ethd_status ethd__markers_open(const ethd__protocol *p, ethd__markers *out, char message[ETHD_MESSAGE_MAX]) {
-  char what[ETHD_MESSAGE_MAX / 2];
-  *out = (ethd__markers){.protocol = p, .socket = -1};
-  snprintf(what, sizeof what, "%s: study.markers", p->path);
-  return p->markers ? ethd__telemetry_open(what, p->markers, true, &out->socket, message) : ETHD_OK;
+ethd_status ethd__markers_open(const char *address, ethd__markers *out, char message[ETHD_MESSAGE_MAX]) {
+  *out = (ethd__markers){.address = address, .socket = -1};
+  return address ? ethd__telemetry_open("--markers", address, true, &out->socket, message) : ETHD_OK;
 }
 
 void ethd__markers_close(ethd__markers *m) {
@@ -23,7 +21,7 @@ void ethd__markers_close(ethd__markers *m) {
   m->socket = -1;
 }
 
-/* A send may fail because of the one before, whose datagram nobody took; this one is then still to be sent. */
+/* A send can report that the datagram before was refused, without sending this one; it is then sent once more. */
 static bool leaves(int socket, const char *line, size_t length) {
   for (int tries = 0; tries < 2; tries++)
     if (send(socket, line, length, MSG_DONTWAIT | MSG_NOSIGNAL) >= 0) return tries == 0;
@@ -40,6 +38,6 @@ void ethd__markers_send(ethd__markers *m, const char *event, const ethd__turn *t
            p->speeds.word[turn->block.speed], ns / SECOND, ns % SECOND, reason);
   errno = 0;
   if (leaves(m->socket, line, strlen(line)) || atomic_exchange(&m->told, true)) return;
-  fprintf(stderr, "%s: study.markers: %s: %s; markers are lost, and the study goes on\n", program_invocation_short_name,
-          p->markers, strerror(errno));
+  fprintf(stderr, "%s: --markers: %s: %s; markers are lost, and the study goes on\n", program_invocation_short_name,
+          m->address, strerror(errno));
 }

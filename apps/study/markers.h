@@ -16,13 +16,14 @@
 
 typedef struct ethd__markers {
   const ethd__protocol *protocol;
-  int socket;       /* -1: the study wants none */
-  atomic_bool told; /* that markers are lost */
+  const char *address; /* NULL: none */
+  int socket;          /* -1: none */
+  atomic_bool told;    /* that markers are lost */
 } ethd__markers;
 
-/* Opens the socket if the study has markers. On failure there is none. [main] */
-ETHD_MUST_CHECK ethd_status ethd__markers_open(const ethd__protocol *protocol, ethd__markers *out,
-                                               char message[ETHD_MESSAGE_MAX]);
+/* Opens the socket to HOST:PORT; NULL: no markers. The caller sets `protocol` before the first marker. On failure there is no
+   socket. [main] */
+ETHD_MUST_CHECK ethd_status ethd__markers_open(const char *address, ethd__markers *out, char message[ETHD_MESSAGE_MAX]);
 void ethd__markers_close(ethd__markers *markers);
 
 /* Sends a marker without waiting. One that can't leave is lost, and the first loss is said on stderr. NULL is allowed.

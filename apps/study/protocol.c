@@ -223,8 +223,8 @@ ethd_status ethd__protocol_conditions(ethd__protocol *p, const char *path, char 
 }
 
 void ethd__protocol_free(ethd__protocol *p) {
-  char *own[] = {p->path,  p->text,   p->folder,     p->name,    p->config,     p->plant,
-                 p->scene, p->motion, p->exclusions, p->markers, p->conditions, p->condition_path};
+  char *own[] = {p->path,  p->text,   p->folder,     p->name,       p->config,        p->plant,
+                 p->scene, p->motion, p->exclusions, p->conditions, p->condition_path};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) free(own[i]);
   ethd__word_list_free(&p->strategies);
   ethd__word_list_free(&p->speeds);

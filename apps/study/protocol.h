@@ -13,7 +13,6 @@
      survey = off      on                 graze = 0.02            s of touch that a tap needs at least
      record = all      none               lift = 0.005            m off the wall and back: a double tap
      rest = 3          blocks, 0: never   slack = 0.0004          m: so near to the ring people's fingers touch it
-     markers = HOST:PORT                  see markers.h
      conditions = FILE.csv                columns transition and speed, a row for each condition, in the place of
                                           strategies and speeds, of which all combinations are conditions
 
@@ -86,7 +85,7 @@ typedef struct ethd__protocol {
   char *conditions, *condition_path; /* as the key says; the file as it was read; NULL: all combinations */
   ethd__condition condition[ETHD_STUDY_CONDITIONS];
   size_t condition_count;
-  char *exclusions, *markers; /* NULL: not given */
+  char *exclusions; /* NULL: not given */
   ethd__order order;
   ethd__hands hands;
   bool survey, record;

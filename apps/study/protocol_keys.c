@@ -160,7 +160,6 @@ static const key_row rows[] = {
     {"study", "rest", set_count, AT(rest), 0, 1000, NULL},
     {"study", "record", set_switch, AT(record), 0, 0, "none|all"},
     {"study", "conditions", set_text, AT(conditions), 0, 0, NULL},
-    {"study", "markers", set_text, AT(markers), 0, 0, NULL},
     {"device", "config", set_text, AT(config), 0, 0, NULL},
     {"device", "plant", set_text, AT(plant), 0, 0, NULL},
     {"scene", "file", set_text, AT(scene), 0, 0, NULL},
