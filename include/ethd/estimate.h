@@ -3,6 +3,8 @@
 #ifndef ETHD_ESTIMATE_H
 #define ETHD_ESTIMATE_H
 
+#include <stdbool.h>
+
 #include "ethd/maths.h"
 #include "ethd/param.h"
 
@@ -135,7 +137,8 @@ ETHD_API void ethd_fit_rays(double ring_radius, double finger_radius, ethd_vec c
      compensation = none    the state is that of now and moves on with every tick; a reading counts as if
                             it had been taken now
 
-   Both axes have the same noise, so they share the covariance. */
+   All axes have the same noise, so they share the covariance. The plane has two axes and space three, in functions of
+   their own (..._start3, _update3, _output3); a state is used with one kind of them. */
 
 typedef enum ethd_filter_method {
   ETHD_FILTER_CA = 0,     /* Kalman, constant acceleration: Q = jerk^2 g g^T, g = (T^3/6, T^2/2, T) for
@@ -165,15 +168,17 @@ typedef struct ethd_filter {
   double p[ETHD_PARAMS_MAX]; /* as posted */
 } ethd_filter;
 
-/* State of the filter: numbers only. Zeroed: not started. */
+/* State of the filter: numbers only. Zeroed: not started. In the plane the third components are 0. */
 typedef struct ethd_filter_state {
-  double x[2], v[2], a[2]; /* m, m/s, m/s^2 */
+  double x[3], v[3], a[3]; /* m, m/s, m/s^2 */
   double cov[6];           /* of one axis: xx xv xa vv va aa */
   double age;              /* s from the last used reading's stamp to now. After a start: -latency (stamp: so that
                               older readings are late), inf (none) */
   uint32_t started;
   uint32_t used, late, gated, restarts; /* readings counted */
   uint32_t gated_in_a_row;
+  uint32_t acquired; /* readings in space used since the start, which counts as one; at most ETHD_FILTER_ACQUIRED */
+  uint32_t reserved;
 } ethd_filter_state;
 
 #define ETHD_FILTER_GATED_MAX 5
@@ -187,7 +192,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_filter_prepare(ethd_filter_method meth
    m^2/s^4). Counters stay. [rt] */
 ETHD_API void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, ethd_vec v) ETHD_RT;
 
-/* Lets dt s pass. [rt] */
+/* Lets dt s pass, in the plane and in space. [rt] */
 ETHD_API void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) ETHD_RT;
 
 /* Takes a reading of the finger's position, m in R_0, stamped `age` s ago. A filter that isn't started starts there, at
@@ -201,6 +206,48 @@ ETHD_API ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_s
 /* Gives where the finger is now, m, and its velocity, m/s, in R_0. [rt] */
 ETHD_API void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x,
                                  ethd_vec *v) ETHD_RT;
+
+/* ---- the same in space ---- */
+
+/* The three axes are those of any frame that doesn't turn, for example a headset's. */
+
+#define ETHD_FILTER_NOISE_MAX 0.05   /* m: largest sd that a reading may state */
+#define ETHD_FILTER_V_NOISE_MAX 10.0 /* m/s */
+#define ETHD_FILTER_LOSS 0.1         /* s between two used readings after which the finger counts as lost */
+#define ETHD_FILTER_ACQUIRED 8       /* readings used after which the filter has acquired the finger */
+
+/* A reading of the finger, for example a headset's. The Kalman filters use noise and velocity, the others don't. */
+typedef struct ethd_filter_reading {
+  ethd_vec3 x, v;    /* m, m/s */
+  double age;        /* s from its stamp to now */
+  double noise;      /* sd of x in each axis, m, up to ETHD_FILTER_NOISE_MAX; 0: the filter's parameter */
+  double v_noise;    /* sd of v in each axis, m/s, up to ETHD_FILTER_V_NOISE_MAX; 0: v wasn't measured */
+  bool extrapolated; /* the tracker has extrapolated x and v to now: they count as of now, whatever their age */
+} ethd_filter_reading;
+
+/* Starts the filter at x, m, with velocity v, m/s, as ethd_filter_start does. [rt] */
+ETHD_API void ethd_filter_start3(const ethd_filter *filter, ethd_filter_state *state, ethd_vec3 x, ethd_vec3 v) ETHD_RT;
+
+/* Takes a reading as ethd_filter_update does, with these differences:
+
+   - A measured velocity corrects too, after the position, and is gated against sqrt(P_vv + v_noise^2). If either is
+     gated, the reading isn't used. A start from such a reading has its velocity.
+   - A filter whose last used reading was taken over ETHD_FILTER_LOSS before this one starts again (`restarts`).
+   - After every start the filter acquires the finger: the reading that follows n used ones has the gate widened by
+     1 + 4 / n^(3/2), until n = ETHD_FILTER_ACQUIRED: 5, 2.4, 1.8, 1.5, 1.4, 1.3, 1.2. A tracker that is so many times
+     noisier than it says loses no more readings than `gate` stands for: 1 in 900 at 4, as P(chi^2 > 16) with three
+     degrees of freedom. This is how much wider a test has to be that knows the noise from n readings only,
+     sqrt(F(3, 3 n) / F(3, inf)) at this probability, or up to 17 % more. While `acquired` < ETHD_FILTER_ACQUIRED, a
+     gated reading is no sign of a broken tracker.
+
+   ETHD_STATUS_STALE: late or gated, as in the plane; a noise that isn't finite or isn't within its range counts as
+   gated, too. [rt] */
+ETHD_API ethd_status ethd_filter_update3(const ethd_filter *filter, ethd_filter_state *state,
+                                         const ethd_filter_reading *reading) ETHD_RT;
+
+/* Gives where the finger is now, m, and its velocity, m/s. [rt] */
+ETHD_API void ethd_filter_output3(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec3 *x,
+                                  ethd_vec3 *v) ETHD_RT;
 
 ETHD_END_DECLS
 

@@ -1,4 +1,4 @@
-/* Kalman filters of position, velocity and acceleration, with one covariance for both axes. cv is the same filter with
+/* Kalman filters of position, velocity and acceleration, with one covariance for all axes. cv is the same filter with
    an acceleration that is known to be 0. P = [xx xv xa; . vv va; . . aa], z = x + noise. */
 #include "estimate/filter_methods.h"
 
@@ -20,22 +20,28 @@ void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__filte
   p[AA] = w.aa * w.aa * p[AA] + ga * ga;
 }
 
-bool ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r, double noise) {
-  double gate = f->p[FILTER_GATE], *p = s->cov;
-  double variance = p[XX] + noise * noise;
-  if (!(ethd_vec_dot(r, r) <= gate * gate * variance)) return false;
-  double kx = p[XX] / variance, kv = p[XV] / variance, ka = p[XA] / variance;
-  double left = noise * noise / variance, axis[2] = {r.x, r.y};
-  for (int i = 0; i < 2; i++) {
-    s->x[i] += kx * axis[i];
-    s->v[i] += kv * axis[i];
-    s->a[i] += ka * axis[i];
-  }
-  p[VV] -= kv * p[XV];
-  p[VA] -= kv * p[XA];
-  p[AA] -= ka * p[XA];
-  p[XX] *= left;
-  p[XV] *= left;
-  p[XA] *= left;
+/* What one axis' gains and covariance become when its state `o` is measured: 0 is the position, 1 the velocity. `square`
+   is the squared innovation of all axes together. */
+static inline bool measure(double p[6], int o, double square, double noise, double gate, double k[3]) {
+  static const int row[2][3] = {{XX, XV, XA}, {XV, VV, VA}};
+  const int *c = row[o], own = c[o], first = c[1 - o], last = c[2];
+  double variance = p[own] + noise * noise;
+  if (!(square <= gate * gate * variance)) return false;
+  for (int i = 0; i < 3; i++) k[i] = p[c[i]] / variance;
+  double left = noise * noise / variance;
+  p[o ? XX : VV] -= k[1 - o] * p[first];
+  p[o ? XA : VA] -= k[1 - o] * p[last];
+  p[AA] -= k[2] * p[last];
+  p[own] *= left;
+  p[first] *= left;
+  p[last] *= left;
   return true;
+}
+
+bool ethd__filter_gains(ethd_filter_state *s, double square, double noise, double gate, double k[3]) {
+  return measure(s->cov, 0, square, noise, gate, k);
+}
+
+bool ethd__filter_v_gains(ethd_filter_state *s, double square, double noise, double gate, double k[3]) {
+  return measure(s->cov, 1, square, noise, gate, k);
 }

@@ -30,8 +30,11 @@ static inline ethd__filter_motion ethd__filter_motion_over(const ethd_filter *f,
 /* Carries the covariance over t s and adds the process noise. [rt] */
 void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__filter_motion w) ETHD_RT;
 
-/* Corrects with the innovation r of a reading whose noise is known, m; false: it was gated, nothing is done. [rt] */
-bool ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r, double noise) ETHD_RT;
+/* Correct the covariance for a reading of position or velocity whose noise is known, m or m/s, and give the gains of x,
+   v and a. square: squared length of its innovation; false: it is over `gate` standard deviations, nothing is done.
+   [rt] */
+bool ethd__filter_gains(ethd_filter_state *s, double square, double noise, double gate, double k[3]) ETHD_RT;
+bool ethd__filter_v_gains(ethd_filter_state *s, double square, double noise, double gate, double k[3]) ETHD_RT;
 
 /* ethd_filter_update for readings whose noise differs from one to the next: sd of each axis, m; 0: as the filter's
    parameter says. Filters of fixed gains don't ask. [rt] */

@@ -1,3 +1,5 @@
+/* The plane's functions and those of space are one code: `axes`, 2 or 3, is a constant wherever it is inlined. In the
+   plane the third components stay 0. */
 #include "ethd/estimate.h"
 
 #include <math.h>
@@ -6,42 +8,50 @@
 #include "estimate/filter_methods.h"
 #include "fp_mode.h"
 
+#define FOR_AXES static inline __attribute__((always_inline))
+
+/* ---- start ---- */
+
 /* How far off a filter's start may be: the variances of each axis. Only for ca is the acceleration uncertain. */
 typedef struct doubt {
   double x, v, a; /* m^2, m^2/s^2, m^2/s^4 */
 } doubt;
 
-static void begin(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, ethd_vec v, doubt d) {
+static void begin(const ethd_filter *f, ethd_filter_state *s, ethd_vec3 x, ethd_vec3 v, doubt d) {
   double p[6] = {d.x, 0, 0, d.v, 0, f->method == ETHD_FILTER_CA ? d.a : 0};
-  s->x[0] = x.x, s->x[1] = x.y;
-  s->v[0] = v.x, s->v[1] = v.y;
-  s->a[0] = s->a[1] = 0;
+  ethd_vec3_put(x, s->x);
+  ethd_vec3_put(v, s->v);
+  s->a[0] = s->a[1] = s->a[2] = 0;
   memcpy(s->cov, p, sizeof p);
   s->started = 1;
   s->gated_in_a_row = 0;
+  s->acquired = 1;
 }
 
-void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, ethd_vec v) {
+void ethd_filter_start3(const ethd_filter *filter, ethd_filter_state *state, ethd_vec3 x, ethd_vec3 v) {
   begin(filter, state, x, v, (doubt){1e-6, 1e-4, 1}); /* sd 1 mm, 1 cm/s, 1 m/s^2: the start is known */
   state->age = filter->compensation == ETHD_COMPENSATION_STAMP ? -filter->p[FILTER_LATENCY] : INFINITY;
 }
 
-/* What a reading says: where, how long ago, and how far off it may be (sd of each axis). */
-typedef struct sighting {
-  ethd_vec x;
-  double age, noise; /* s, m */
-} sighting;
+void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, ethd_vec v) {
+  ethd_filter_start3(filter, state, (ethd_vec3){x.x, x.y, 0}, (ethd_vec3){v.x, v.y, 0});
+}
 
-static void start_from(const ethd_filter *f, ethd_filter_state *s, const sighting *seen) {
-  double square = seen->noise * seen->noise;
-  begin(f, s, seen->x, (ethd_vec){0, 0}, (doubt){square, 1, 100}); /* sd 1 m/s, 10 m/s^2: a finger in full motion */
+/* Begins at a reading, whose noise is known. Without a velocity it is taken to be at rest, with a sd of 1 m/s; the sd of
+   the acceleration is 10 m/s^2: a finger in full motion. */
+static void start_from(const ethd_filter *f, ethd_filter_state *s, const ethd_filter_reading *seen) {
+  const bool moves = seen->v_noise > 0 && ethd__filter_is_kalman(f);
+  const doubt d = {seen->noise * seen->noise, moves ? seen->v_noise * seen->v_noise : 1, 100};
+  begin(f, s, seen->x, moves ? seen->v : (ethd_vec3){0, 0, 0}, d);
   s->age = seen->age;
   s->used++;
 }
 
-static void advance(const ethd_filter *f, ethd_filter_state *s, double t) {
+/* ---- time passes ---- */
+
+FOR_AXES void advance(const ethd_filter *f, ethd_filter_state *s, double t, int axes) {
   ethd__filter_motion w = ethd__filter_motion_over(f, t);
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < axes; i++) {
     s->x[i] += s->v[i] * t + s->a[i] * w.ax;
     s->v[i] += s->a[i] * w.av;
     s->a[i] *= w.aa;
@@ -51,7 +61,7 @@ static void advance(const ethd_filter *f, ethd_filter_state *s, double t) {
 
 ETHD__FP_APART void ethd__filter_predict(const ethd_filter *f, ethd_filter_state *s, double dt) {
   s->age += dt;
-  if (f->compensation == ETHD_COMPENSATION_NONE) advance(f, s, dt);
+  if (f->compensation == ETHD_COMPENSATION_NONE) advance(f, s, dt, 3);
 }
 
 void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) {
@@ -60,51 +70,99 @@ void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, do
   ethd__fp_give(callers);
 }
 
-static bool correct(const ethd_filter *f, ethd_filter_state *s, const sighting *seen, double elapsed) {
-  ethd_vec r = {seen->x.x - s->x[0], seen->x.y - s->x[1]};
-  if (ethd__filter_is_kalman(f)) return ethd__filter_correct(f, s, r, seen->noise);
-  bool hold = f->method == ETHD_FILTER_HOLD;
-  double alpha = hold ? 1 : f->p[ALPHA_BETA_ALPHA], beta = hold ? 0 : f->p[ALPHA_BETA_BETA];
-  s->x[0] += alpha * r.x;
-  s->x[1] += alpha * r.y;
-  s->v[0] += beta * r.x / elapsed;
-  s->v[1] += beta * r.y / elapsed;
+/* ---- readings ---- */
+
+/* Gives what was seen less what was expected, and returns its squared length. */
+FOR_AXES double innovation(const double expected[3], ethd_vec3 seen, double r[3], int axes) {
+  r[0] = seen.x - expected[0];
+  r[1] = seen.y - expected[1];
+  r[2] = axes == 3 ? seen.z - expected[2] : 0;
+  return axes == 3 ? r[0] * r[0] + r[1] * r[1] + r[2] * r[2] : r[0] * r[0] + r[1] * r[1];
+}
+
+FOR_AXES void move(ethd_filter_state *s, const double k[3], const double r[3], int axes) {
+  for (int i = 0; i < axes; i++) {
+    s->x[i] += k[0] * r[i];
+    s->v[i] += k[1] * r[i];
+    s->a[i] += k[2] * r[i];
+  }
+}
+
+FOR_AXES bool correct_by_kalman(ethd_filter_state *s, const ethd_filter_reading *seen, double gate, int axes) {
+  double k[3], r[3], square = innovation(s->x, seen->x, r, axes);
+  if (!ethd__filter_gains(s, square, seen->noise, gate, k)) return false;
+  move(s, k, r, axes);
+  if (!(seen->v_noise > 0)) return true;
+  square = innovation(s->v, seen->v, r, axes);
+  if (!ethd__filter_v_gains(s, square, seen->v_noise, gate, k)) return false;
+  move(s, k, r, axes);
   return true;
 }
 
-static ethd_status gated(const ethd_filter *f, ethd_filter_state *s, const sighting *seen) {
-  s->gated++;
-  if (++s->gated_in_a_row < ETHD_FILTER_GATED_MAX) return ETHD_STATUS_STALE;
+FOR_AXES bool correct(const ethd_filter *f, ethd_filter_state *s, const ethd_filter_reading *seen, double elapsed,
+                      int axes) {
+  if (ethd__filter_is_kalman(f)) {
+    const bool acquires = axes == 3 && s->acquired < ETHD_FILTER_ACQUIRED;
+    const double n = s->acquired, gate = f->p[FILTER_GATE];
+    return correct_by_kalman(s, seen, acquires ? gate * (1 + 4 / (n * sqrt(n))) : gate, axes);
+  }
+  const bool hold = f->method == ETHD_FILTER_HOLD;
+  const double alpha = hold ? 1 : f->p[ALPHA_BETA_ALPHA], beta = hold ? 0 : f->p[ALPHA_BETA_BETA];
+  double r[3];
+  innovation(s->x, seen->x, r, axes);
+  for (int i = 0; i < axes; i++) {
+    s->x[i] += alpha * r[i];
+    s->v[i] += beta * r[i] / elapsed;
+  }
+  return true;
+}
+
+static ethd_status restart(const ethd_filter *f, ethd_filter_state *s, const ethd_filter_reading *seen) {
   start_from(f, s, seen);
   s->restarts++;
   return ETHD_OK;
 }
 
+static ethd_status gated(const ethd_filter *f, ethd_filter_state *s, const ethd_filter_reading *seen) {
+  s->gated++;
+  return ++s->gated_in_a_row < ETHD_FILTER_GATED_MAX ? ETHD_STATUS_STALE : restart(f, s, seen);
+}
+
+/* Takes a reading whose numbers are possible. Before a reading after a known start no time is known to have passed where
+   ages aren't compensated: then `elapsed` is infinite, and nothing was lost. */
+FOR_AXES ethd_status use(const ethd_filter *f, ethd_filter_state *s, const ethd_filter_reading *seen, int axes) {
+  if (!s->started) {
+    start_from(f, s, seen);
+    return ETHD_OK;
+  }
+  double elapsed = s->age - seen->age;
+  if (!(elapsed > 0)) {
+    s->late++;
+    return ETHD_STATUS_STALE;
+  }
+  if (axes == 3 && elapsed > ETHD_FILTER_LOSS && elapsed < INFINITY) return restart(f, s, seen);
+  ethd_filter_state next = *s;
+  if (f->compensation == ETHD_COMPENSATION_STAMP) advance(f, &next, elapsed, axes);
+  if (!correct(f, &next, seen, elapsed, axes)) return gated(f, s, seen);
+  next.age = seen->age;
+  next.used++;
+  next.gated_in_a_row = 0;
+  if (axes == 3 && next.acquired < ETHD_FILTER_ACQUIRED) next.acquired++;
+  *s = next;
+  return ETHD_OK;
+}
+
+static double own_noise(const ethd_filter *f) { return ethd__filter_is_kalman(f) ? f->p[FILTER_NOISE] : 0; }
+
 ETHD__FP_APART ethd_status ethd__filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x,
                                                double age, double noise) {
-  if (!(noise > 0)) noise = ethd__filter_is_kalman(filter) ? filter->p[FILTER_NOISE] : 0;
-  const sighting seen = {x, age, noise};
   if (!isfinite(x.x) || !isfinite(x.y) || !isfinite(age)) {
     state->gated++;
     return ETHD_STATUS_STALE;
   }
-  if (!state->started) {
-    start_from(filter, state, &seen);
-    return ETHD_OK;
-  }
-  double elapsed = state->age - age;
-  if (!(elapsed > 0)) {
-    state->late++;
-    return ETHD_STATUS_STALE;
-  }
-  ethd_filter_state next = *state;
-  if (filter->compensation == ETHD_COMPENSATION_STAMP) advance(filter, &next, elapsed);
-  if (!correct(filter, &next, &seen, elapsed)) return gated(filter, state, &seen);
-  next.age = age;
-  next.used++;
-  next.gated_in_a_row = 0;
-  *state = next;
-  return ETHD_OK;
+  const ethd_filter_reading seen = {
+      .x = {x.x, x.y, 0}, .age = age, .noise = noise > 0 ? noise : own_noise(filter), .v_noise = 0};
+  return use(filter, state, &seen, 2);
 }
 
 ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, double age) {
@@ -114,18 +172,69 @@ ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *sta
   return status;
 }
 
+/* Returns whether x, v, age and noises are possible numbers; what isn't measured isn't asked. */
+static bool is_possible(const ethd_filter_reading *r) {
+  const bool moves = !(r->v_noise == 0);
+  if (!(r->noise >= 0 && r->noise <= ETHD_FILTER_NOISE_MAX)) return false;
+  if (moves && !(r->v_noise > 0 && r->v_noise <= ETHD_FILTER_V_NOISE_MAX)) return false;
+  if (moves && !(isfinite(r->v.x) && isfinite(r->v.y) && isfinite(r->v.z))) return false;
+  return isfinite(r->x.x) && isfinite(r->x.y) && isfinite(r->x.z) && (r->extrapolated || isfinite(r->age));
+}
+
+/* A reading that was extrapolated to now is one that its stamp is the latency ahead of now. */
+ETHD__FP_APART static ethd_status update3(const ethd_filter *f, ethd_filter_state *s, const ethd_filter_reading *r) {
+  if (!is_possible(r)) {
+    s->gated++;
+    return ETHD_STATUS_STALE;
+  }
+  ethd_filter_reading seen = *r;
+  if (!(seen.noise > 0)) seen.noise = own_noise(f);
+  if (seen.extrapolated) seen.age = f->compensation == ETHD_COMPENSATION_STAMP ? -f->p[FILTER_LATENCY] : 0;
+  return use(f, s, &seen, 3);
+}
+
+ethd_status ethd_filter_update3(const ethd_filter *filter, ethd_filter_state *state,
+                                const ethd_filter_reading *reading) {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = update3(filter, state, reading);
+  ethd__fp_give(callers);
+  return status;
+}
+
+/* ---- output ---- */
+
+FOR_AXES void extrapolate(const ethd_filter *f, const ethd_filter_state *s, double x[3], double v[3], int axes) {
+  const double t = f->compensation == ETHD_COMPENSATION_STAMP ? s->age + f->p[FILTER_LATENCY] : 0;
+  const ethd__filter_motion w = ethd__filter_motion_over(f, t);
+  for (int i = 0; i < axes; i++) {
+    x[i] = s->x[i] + (s->v[i] * t + s->a[i] * w.ax);
+    v[i] = s->v[i] + s->a[i] * w.av;
+  }
+}
+
 ETHD__FP_APART void ethd__filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x,
                                         ethd_vec *v) {
-  bool stamp = filter->compensation == ETHD_COMPENSATION_STAMP;
-  double t = stamp ? state->age + filter->p[FILTER_LATENCY] : 0;
-  ethd__filter_motion w = ethd__filter_motion_over(filter, t);
-  const double *p = state->x, *q = state->v, *a = state->a;
-  *x = (ethd_vec){p[0] + (q[0] * t + a[0] * w.ax), p[1] + (q[1] * t + a[1] * w.ax)};
-  *v = (ethd_vec){q[0] + a[0] * w.av, q[1] + a[1] * w.av};
+  double at[3], speed[3];
+  extrapolate(filter, state, at, speed, 2);
+  *x = ethd_vec_of(at);
+  *v = ethd_vec_of(speed);
 }
 
 void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x, ethd_vec *v) {
   const uint64_t callers = ethd__fp_take();
   ethd__filter_output(filter, state, x, v);
+  ethd__fp_give(callers);
+}
+
+ETHD__FP_APART static void output3(const ethd_filter *f, const ethd_filter_state *s, ethd_vec3 *x, ethd_vec3 *v) {
+  double at[3], speed[3];
+  extrapolate(f, s, at, speed, 3);
+  *x = ethd_vec3_of(at);
+  *v = ethd_vec3_of(speed);
+}
+
+void ethd_filter_output3(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec3 *x, ethd_vec3 *v) {
+  const uint64_t callers = ethd__fp_take();
+  output3(filter, state, x, v);
   ethd__fp_give(callers);
 }

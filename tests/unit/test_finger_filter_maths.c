@@ -1,56 +1,9 @@
 /* What the filters compute: against matrices in long double, by hand, gated, and side by side on reaches. */
 #include "finger_filters.h"
+#include "kalman_matrices.h"
 #include "unit/suite.h"
 
 /* ---- Kalman filters as matrices ---- */
-
-typedef long double matrix[3][3];
-
-typedef struct reference {
-  int n; /* 2: cv, 3: ca */
-  long double noise, drive, memory;
-  long double x[3];
-  matrix p;
-} reference;
-
-static void ref_move(reference *r, long double t) {
-  long double z = r->n == 3 ? t / (2 * r->memory) : 0, fade = (1 - z) / (1 + z), av = t / (1 + z);
-  matrix f = {{1, t, t * av / 2}, {0, 1, av}, {0, 0, fade}}, fp = {{0}}, out = {{0}};
-  long double g3[3] = {t * t * t / 6, t * t / 2, t}, g2[3] = {t * t / 2, t, 0}, *g = r->n == 3 ? g3 : g2, x[3] = {0};
-  for (int i = 0; i < r->n; i++)
-    for (int j = 0; j < r->n; j++) {
-      x[i] += f[i][j] * r->x[j];
-      for (int k = 0; k < r->n; k++) fp[i][j] += f[i][k] * r->p[k][j];
-    }
-  for (int i = 0; i < r->n; i++)
-    for (int j = 0; j < r->n; j++) {
-      for (int k = 0; k < r->n; k++) out[i][j] += fp[i][k] * f[j][k];
-      out[i][j] += r->drive * r->drive * g[i] * g[j];
-    }
-  memcpy(r->x, x, sizeof x);
-  memcpy(r->p, out, sizeof out);
-}
-
-static void ref_correct(reference *r, long double z) {
-  long double s = r->p[0][0] + r->noise * r->noise, gain[3], top[3], innovation = z - r->x[0];
-  for (int i = 0; i < r->n; i++) gain[i] = r->p[i][0] / s, top[i] = r->p[0][i];
-  for (int i = 0; i < r->n; i++) {
-    r->x[i] += gain[i] * innovation;
-    for (int j = 0; j < r->n; j++) r->p[i][j] -= gain[i] * top[j];
-  }
-}
-
-static void ref_equal(const reference *r, const ethd_filter_state *s) {
-  const int at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
-  const double state[3] = {s->x[0], s->v[0], s->a[0]}, size[3] = {1, 10, 100};
-  for (int i = 0; i < r->n; i++) {
-    ck_assert_double_le(fabs((double)(state[i] - r->x[i])), 1e-12 * size[i]);
-    for (int j = 0; j < r->n; j++) {
-      double scale = sqrt((double)(r->p[i][i] * r->p[j][j]));
-      ck_assert_double_le(fabs((double)(s->cov[at[i][j]] - r->p[i][j])), 1e-9 * scale);
-    }
-  }
-}
 
 /* cv, ca, ca without fading; each tick by tick and by stamps; frames lost, ticks missed. */
 TEST_LOOP(test_kalman_as_matrices, 0, 6) {
@@ -81,10 +34,10 @@ TEST_LOOP(test_kalman_as_matrices, 0, 6) {
     double sampled = now - 2e-3, z = 0.3 + 0.05 * now + 0.01 * sin(20 * sampled) + 1e-4 * draw_normal((uint64_t)k);
     if (by_stamp && sampled - 0.4e-3 <= stands) continue;
     if (by_stamp) ref_move(&r, (long double)(sampled - 0.4e-3) - stands);
-    ref_correct(&r, z);
+    ref_correct(&r, 0, z, r.noise);
     stands = sampled - 0.4e-3;
     ck_assert_int_eq(ethd_filter_update(&f, &s, (ethd_vec){z, 0.2}, 2e-3), ETHD_OK);
-    ref_equal(&r, &s);
+    ref_equal(&r, &s, 0);
     used++;
     reference ahead = r;
     ethd_vec x, v;

@@ -430,6 +430,11 @@ TEST(test_odd_readings) {
       IN(&usual_traps, ethd_filter_start(&filter, &state, (ethd_vec){a, b}, (ethd_vec){b, a});
          ethd_filter_predict(&filter, &state, 0.001); (void)ethd_filter_update(&filter, &state, (ethd_vec){0, 0}, b);
          ethd_filter_output(&filter, &state, &x, &v); ethd_filter_predict(&filter, &state, a));
+      ethd_vec3 x3, v3;
+      const ethd_filter_reading reading = {.x = {0, a, b}, .v = {b, a, 0}, .age = b, .noise = 0.01, .v_noise = 1};
+      IN(&usual_traps, ethd_filter_start3(&filter, &state, (ethd_vec3){a, b, a}, (ethd_vec3){b, a, b});
+         ethd_filter_predict(&filter, &state, 0.001); (void)ethd_filter_update3(&filter, &state, &reading);
+         ethd_filter_output3(&filter, &state, &x3, &v3));
     }
     for (int i = 0; i < ETHD_VELOCITY_COUNT; i++) {
       ethd_velocity velocity;
