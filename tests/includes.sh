@@ -1,7 +1,7 @@
 #!/bin/sh
 # Every include points to its own floor or to a lower one. From the ground up: lib's maths and its root; guard, scene,
-# estimate and law; control; drivers; apps. A public header stands on the floor of the library that it links from. Nothing but
-# these rooms is kept at the top.
+# solids, estimate and law; control; drivers; apps. A public header stands on the floor of the library that it links
+# from. Nothing but these rooms is kept at the top.
 top=$(git ls-files 2>/dev/null | cut -d/ -f1 | grep -v '^[.]' | LC_ALL=C sort -u | tr '\n' ' ')
 case $top in
   '' | 'LICENSE Makefile README.md apps drivers include lib tests ') ;;
@@ -10,7 +10,7 @@ esac
 exec "${PYTHON:-python3}" - <<'END'
 import pathlib, re, sys
 
-FLOORS = [r"lib/maths/|lib/[^/]*$", r"lib/(guard|scene|estimate|law)/", r"lib/core/", r"lib/control/", r"drivers/", r"apps/"]
+FLOORS = [r"lib/maths/|lib/[^/]*$", r"lib/(guard|scene|solids|estimate|law)/", r"lib/core/", r"lib/control/", r"drivers/", r"apps/"]
 
 def floor(path):
     text = path.as_posix()

@@ -22,6 +22,7 @@
 #include "ethd/plugin.h"
 #include "ethd/scene.h"
 #include "ethd/sense.h"
+#include "ethd/solids.h"
 #include "ethd/surface.h"
 
 #endif

@@ -36,7 +36,7 @@ typedef struct ethd__world {
   const ethd__form *(*form)(size_t shape);
 } ethd__world;
 
-extern const ethd__world ethd__plane;
+extern const ethd__world ethd__plane, ethd__space;
 
 /* Returns where number k of an object is in its form. */
 static inline size_t ethd__number_of(const ethd__form *f, size_t k) { return f->cycle ? k % f->cycle : k; }

@@ -182,10 +182,28 @@ static ethd_status read_material(text_reader *r, ethd__text *t, text_word keywor
 
 /* ---- objects ---- */
 
+/* Returns the number of the shape that is called so in a world; the count: none is. */
+static size_t find_shape(const ethd__world *world, text_word w) {
+  size_t i = 0;
+  while (i < world->count && !is(w, world->form(i)->name)) i++;
+  return i;
+}
+
+/* A shape of the other world is named as such: "circle, a shape of the plane". */
+static ethd_status refuse_shape(ethd__text *t, text_word w) {
+  const ethd__world *other = t->world == &ethd__plane ? &ethd__space : &ethd__plane;
+  char name[64];
+  size_t shape = find_shape(other, w), n;
+  if (shape == other->count) return refuse_word(&t->reader, ETHD_E_UNKNOWN, w);
+  n = ethd__append(name, 0, other->form(shape)->name);
+  n = ethd__append(name, n, ", a shape of ");
+  n = ethd__append(name, n, other->name);
+  return refuse_word(&t->reader, ETHD_E_UNKNOWN, (text_word){name, n});
+}
+
 static ethd_status read_shape(ethd__text *t, text_word w, size_t *out) {
-  for (*out = 0; *out < t->world->count; ++*out)
-    if (is(w, t->world->form(*out)->name)) return ETHD_OK;
-  return refuse_word(&t->reader, ETHD_E_UNKNOWN, w);
+  *out = find_shape(t->world, w);
+  return *out < t->world->count ? ETHD_OK : refuse_shape(t, w);
 }
 
 static ethd_status read_reference(ethd__text *t, text_word w, int32_t *out) {

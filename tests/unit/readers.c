@@ -6,6 +6,7 @@
 
 #include "ethd/config.h"
 #include "ethd/scene.h"
+#include "ethd/solids.h"
 #include "inject/script.h"
 #include "proximity_ring/calibration.h"
 #include "proximity_ring/decoder.h"
@@ -23,15 +24,16 @@ static int judged(ethd_status status, const char *message) {
 
 /* ---- scenes and drawings ---- */
 
+static int refused(ethd_status status, const void *made, const ethd_error *error) {
+  bool said = status < 0 && error->status == status && error->line >= 1 && error->name[0];
+  return said && !made && !strpbrk(error->name, "\n\r\033") ? 0 : -1;
+}
+
 static int read_scene(const char *text, size_t length) {
   ethd_scene *scene;
   ethd_error error;
   ethd_status status = ethd_scene_parse(text, length, &scene, &error);
-  if (status != ETHD_OK)
-    return !scene && status < 0 && error.status == status && error.line >= 1 && error.name[0] &&
-                   !strpbrk(error.name, "\n\r\033")
-               ? 0
-               : -1;
+  if (status != ETHD_OK) return refused(status, scene, &error);
   const ethd_vec x = {0.3, 0.7};
   ethd_touch touch;
   ethd_nearest q;
@@ -44,6 +46,25 @@ static int read_scene(const char *text, size_t length) {
 
 static void grow_scene(FILE *out, int rows) {
   for (int i = 0; i < rows; i++) fprintf(out, "circle %d.5 %d 0.25 # %d\n", i % 997, i / 997, i);
+}
+
+static int read_solids(const char *text, size_t length) {
+  ethd_solids *solids;
+  ethd_error error;
+  ethd_status status = ethd_solids_parse(text, length, &solids, &error);
+  if (status != ETHD_OK) return refused(status, solids, &error);
+  ethd_solids_info info;
+  ethd_surface nearest;
+  const ethd_vec3 x = {0.3, 0.7, -0.2};
+  ethd_solids_describe(solids, &info);
+  size_t found = ethd_solids_surfaces(solids, NULL, x, INFINITY, &nearest, 1);
+  ethd_solids_destroy(solids);
+  if (found != info.objects) return -1;
+  return !found || fabs(ethd_vec3_norm(nearest.n) - 1) < 1e-12 ? 1 : -1;
+}
+
+static void grow_solids(FILE *out, int rows) {
+  for (int i = 0; i < rows; i++) fprintf(out, "sphere %d.5 %d 1 0.25 # %d\n", i % 997, i / 997, i);
 }
 
 /* ---- tables ---- */
@@ -184,6 +205,11 @@ static const char *const scene_words[] = {"circle ",
                                           "#",
                                           "segment 0 0 1 1\n",
                                           NULL};
+static const char *const solid_words[] = {"sphere ",     "halfspace ", "box 0 0 0 1 1 1 0 0 1\n",
+                                          "capsule ",    "circle ",    "material a k_e=1\n",
+                                          " material=a", "\n",         "1e999",
+                                          "nan",         "-1",         "1e-300",
+                                          "#",           " 0",         NULL};
 static const char *const config_words[] = {"inf",
                                            "nan",
                                            "-",
@@ -223,6 +249,10 @@ const text_reader text_readers[] = {
      TEXT("material soft k_e=500 b_e=10\nhalfplane -1 0 -0.238 material=soft\ncircle 0.2 0.2 0.01\nbox 1 1 2 1 0.5\n"
           "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238\npolyline 0 0 1 1 2 0\ncapsule 0 0 1 0 0.1\n"),
      scene_words, read_scene, grow_scene, 20000},
+    {"solids",
+     TEXT("material soft k_e=500 b_e=10\nhalfspace 0 0 -1 0 material=soft\nsphere 0.2 0.2 0 0.01\n"
+          "box 1 1 1 2 1 0.5\nbox 0 0 9 1 1 1 0.1 0.2 0.3\ncapsule 0 0 0 1 0 0 0.1\n"),
+     solid_words, read_solids, grow_solids, 20000},
     {"ini",
      TEXT("[a]\nkey = 1\nword = some words ; and why\n[b]\nlist = 1, 2, 3\n# more\n[plugins]\nfile = a\nfile = b\n"),
      ini_words, read_ini, grow_ini, 2000},

@@ -12,6 +12,7 @@
 #include "ethd/estimate.h"
 #include "ethd/maths.h"
 #include "ethd/sim.h"
+#include "ethd/solids.h"
 #include "unit/rig.h"
 
 #define TICKS 250
@@ -526,4 +527,35 @@ TEST(test_odd_simulations) {
   unlink(file);
   ck_assert_int_eq(status, ETHD_E_RANGE);
   ck_assert_msg(strstr(message, "device.mass_x: found \"nan\", 0.001 to 1000 kg is allowed") != NULL, "%s", message);
+}
+
+/* Solids read in any mode give the same surfaces to the bit, and no place or pose is trapped. */
+TEST(test_odd_solids) {
+  static const char text[] =
+      "sphere 0.1 0.2 0.3 0.1\nhalfspace 0.6 0 0.8000001 0.1\nbox 1 0 0 0.1 0.2 0.3 0.3 0.2 0.1\n"
+      "capsule 0 0 0 0.1 0.7 0.3 0.1\n";
+  ethd_surface first[4], again[4];
+  for (size_t m = 0; m < MODES; m++) {
+    ethd_solids *solids;
+    ethd_status status;
+    IN(&modes[m], status = ethd_solids_parse(text, sizeof text - 1, &solids, NULL));
+    ck_assert_int_eq(status, ETHD_OK);
+    memset(again, 0, sizeof again);
+    ck_assert_uint_eq(ethd_solids_surfaces(solids, NULL, (ethd_vec3){0.3, 0.4, 0.5}, INFINITY, again, 4), 4);
+    if (m == 0) memcpy(first, again, sizeof first);
+    ck_assert(memcmp(first, again, sizeof first) == 0);
+    for (int i = 0; i < ODD * 13; i++) {
+      ethd_body_pose3 pose = {{0.1, 0.2, 0.3}, {1, 0, 0, 0}, {1, 2, 3}, {4, 5, 6}};
+      const double v = odd[i / 13];
+      double *const at[] = {&pose.x.x, &pose.x.y, &pose.x.z, &pose.v.x, &pose.v.z, &pose.rate.x, &pose.rate.z};
+      double x[3] = {0.3, 0.4, 0.5}, range = 1;
+      *(i % 13 < 7    ? at[i % 13]
+        : i % 13 < 9  ? &pose.orientation[i % 13 - 7]
+        : i % 13 < 12 ? &x[i % 13 - 9]
+                      : &range) = v;
+      IN(&usual_traps, (void)ethd_solids_surfaces(solids, &pose, ethd_vec3_of(x), range, again, 4);
+         (void)ethd_solids_surfaces(solids, NULL, ethd_vec3_of(x), range, again, 4));
+    }
+    ethd_solids_destroy(solids);
+  }
 }

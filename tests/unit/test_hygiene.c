@@ -12,6 +12,7 @@
 
 #include "ethd/cell.h"
 #include "ethd/config.h"
+#include "ethd/solids.h"
 #include "unit/rig.h"
 
 void forbid(const char *what);
@@ -91,6 +92,18 @@ static ethd_status parse_scene(void) {
   return status;
 }
 
+static ethd_status parse_solids(void) {
+  static const char text[] = "material soft k_e=500\nhalfspace 0 0 -1 0 material=soft\nbox 0 0 0 1 1 1\n";
+  ethd_solids *solids;
+  ethd_error error;
+  ethd_status status = ethd_solids_parse(text, sizeof text - 1, &solids, &error);
+  if (status == ETHD_OK)
+    ethd_solids_destroy(solids);
+  else
+    well_said = solids == NULL && error.status == status;
+  return status;
+}
+
 static ethd_status make_scene(void) {
   const double wall[] = {-1, 0, -0.238}, shape[] = {0, 0, 1, 0, 1, 1};
   const ethd_object_def objects[] = {{ETHD_SHAPE_HALFPLANE, -1, wall, 3, 0}, {ETHD_SHAPE_POLYGON, -1, shape, 6, 0}};
@@ -153,7 +166,8 @@ static void remove_files(void) {
 
 /* Each says that there is no memory, once for each allocation it makes, and keeps nothing. */
 START_TEST(test_memory_runs_out) {
-  ethd_status (*const makers[])(void) = {make_controller, parse_scene, make_scene, prune_scene, load_config, make_cell};
+  ethd_status (*const makers[])(void) = {make_controller, parse_scene, parse_solids, make_scene,
+                                         prune_scene,     load_config, make_cell};
   write_files();
   ck_assert_int_eq(makers[_i](), ETHD_OK); /* what the C library keeps for itself is there now */
   int failures = 0;
