@@ -131,7 +131,7 @@ APPS_C := $(filter-out apps/examples/%,$(call files,apps/*/*.c))
 PLUGINS_C := $(call files,tests/plugins/*.c)
 TESTS_C := $(filter-out $(PLUGINS_C),$(call files,tests/*/test_*.c))
 BENCH_C := $(call files,tests/bench.c tests/bench/*.c)
-HELPERS_C := $(filter-out $(PLUGINS_C) $(TESTS_C) $(BENCH_C) tests/fuzz/% tests/simavr/% tests/proofs/%,$(call files,tests/*/*.c))
+HELPERS_C := $(filter-out $(PLUGINS_C) $(TESTS_C) $(BENCH_C) tests/simavr/% tests/proofs/%,$(call files,tests/*/*.c))
 TOOLS_C := $(filter-out $(BENCH_C),$(call files,tests/*.c))
 HEADERS := $(call files,include/ethd/*.h)
 SCRIPTS := $(sort $(shell find tests -name '*.sh' -perm -u+x 2>/dev/null))
@@ -348,9 +348,9 @@ bench bench-quick: $(B)/tests/bench $(PEERS) $(SHARE)
 # The long ones: hours, of which one test may take any part.
 STRESS := $(patsubst %.c,$(B)/tests/%,$(notdir $(call files,tests/stress/test_*.c)))
 stress: export CK_DEFAULT_TIMEOUT := 360000
-stress: all $(B)/tests/test_scene_tree $(B)/tests/test_fuzz_decoder \
+stress: all $(B)/tests/test_scene_tree \
   $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_store $(B)/tests/test_servo_driver \
-  $(B)/tests/test_fuzz_map $(B)/tests/test_promises $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
+  $(B)/tests/test_promises $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
   $(B)/tests/volume $(B)/tests/day $(STRESS)
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
@@ -358,8 +358,6 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_fuzz_decoder \
 	BUILD='$(abspath $(B))' PYTHON="$$(sh .ci/setup python)" PLANTS=20 sh tests/identify.sh
 	for k in 1 2 3 4 5; do ETHD_STRESS=1 $(B)/tests/test_servo_guardian || exit 1; done
 	ETHD_SERVO_CYCLES=50000 $(B)/tests/test_servo_link
-	ETHD_FUZZ_RUNS=10000000 $(B)/tests/test_fuzz_map
-	ETHD_FUZZ=100000000 $(B)/tests/test_fuzz_decoder
 	ETHD_RING_FRAMES=20000000 $(B)/tests/test_ring_noise
 	ETHD_REPLUGS=100 $(B)/tests/test_ring_driver
 	ETHD_FUZZ=50000 $(B)/tests/test_store

@@ -1,5 +1,5 @@
-/* Register maps: those that come with the programs, and every refusal with its line. Texts that are no maps are tried in
-   fuzz/test_fuzz_map.c. */
+/* Register maps: those that come with the programs, and every refusal with its line. volume.c
+   tries texts that are no maps. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -11,11 +11,11 @@
 #include "proximity_ring/calibration.h"
 #include "proximity_ring/decoder.h"
 #include "record/npy_parts.h"
-#include "servo/map.h"
 #include "study/protocol.h"
 #include "text/csv.h"
 #include "text/ini.h"
 #include "unit/config_text.h"
+#include "unit/readers_device.h"
 
 static int judged(ethd_status status, const char *message) {
   if (status == ETHD_OK) return 1;
@@ -127,20 +127,6 @@ static int read_npy(const char *text, size_t length) {
 
 /* ---- what a device says, and what it is told to do wrong ---- */
 
-static int read_frames(const char *text, size_t length) {
-  ethd__decoder decoder = {0};
-  ethd__ring_frame frame;
-  const uint8_t *at = (const uint8_t *)text, *end = at + length;
-  int frames = 0;
-  for (; ethd__decoder_next(&decoder, &at, end, &frame); frames++) {
-    uint8_t wire[ETHD__FRAME_WIRE];
-    ethd__frame_encode(&frame, wire);
-    if (at - (const uint8_t *)text < ETHD__FRAME_WIRE || memcmp(wire, at - ETHD__FRAME_WIRE, sizeof wire) != 0)
-      return -1;
-  }
-  return frames > 0;
-}
-
 static void grow_frames(FILE *out, int rows) {
   for (int i = 0; i < rows; i++) {
     uint8_t wire[ETHD__FRAME_WIRE];
@@ -148,12 +134,6 @@ static void grow_frames(FILE *out, int rows) {
                        wire);
     fwrite(wire, 1, sizeof wire, out);
   }
-}
-
-static int read_map(const char *text, size_t length) {
-  static ethd__servo_map map;
-  char message[ETHD_MESSAGE_MAX] = "";
-  return judged(ethd__servo_map_parse(text, length, "x", &map, message), message);
 }
 
 static int read_script(const char *text, size_t length) {
@@ -231,16 +211,12 @@ static const char *const config_words[] = {"inf",
                                            NULL};
 static const char *const calibration_words[] = {"[sensor 3]\n", "[law]\n", "point0 = 1 1\n", "a = 1\n",
                                                 "nan",          "-",       "level = gain\n", NULL};
-static const char *const map_words[] = {
-    "\n[register torque1]\n", "\n", "=", "0x", "step1=", "1e999", "-0.0", "type=f32\n", "[", NULL};
 static const char *const script_words[] = {"q1", "offset", " by=", " for=",  "inf",   "t",
                                            "-1", "nan",    "\n",   "fault9", "1e999", NULL};
 static const char *const study_words[] = {"[grid]", "[hand]\n", "taps = ", "1e999", "nan", ",",
                                           "=",      "\n",       "latin",   "-",     NULL};
 static const char *const npy_words[] = {"'descr'",    "'<f8'", "(",    ")", ", ", "99999999999999999999",
                                         "'shape': (", "\n",    "True", NULL};
-static const char *const frame_words[] = {"\x01", "\x05zzzz", "\xff", "\x1f", NULL};
-
 #define SENSOR(n) "[sensor " #n "]\ndark = 2e3\nserial = 1\npoint0 = 6e4 1e-3\npoint1 = 3e4 2e-3\n"
 #define TEXT(text) (text), sizeof(text) - 1
 
@@ -272,11 +248,10 @@ const text_reader text_readers[] = {
           "\x17\x58\x1b\x40\x1f\x28\x23\x10\x27\xf8\x2a\xe0\x2e\xc8\x32\xb0\x36\x98\x3a\x56\xd9\x00"
           "\x02\x01\x02\x01\x03\x05\x0d\x01\x02\x01\x21\xe9\x03\xd1\x07\xb9\x0b\xa1\x0f\x89\x13\x71"
           "\x17\x59\x1b\x41\x1f\x29\x23\x11\x27\xf9\x2a\xe1\x2e\xc9\x32\xb1\x36\x99\x3a\x7b\x55\x00"),
-     frame_words, read_frames, grow_frames, 20000},
-    {"map",
-     TEXT("[bus]\ntransport=tcp\nport=a:1\n[register torque1]\ndirection=write\naddress=0\ntype=i16\nunit=Nm\nmin=-1\n"
-          "max=1\n[register position1]\ndirection=read\naddress=1\ntype=u16\nunit=rad\n"),
-     map_words, read_map, NULL, 0},
+     readers_frame_words, readers_frames, grow_frames, 20000},
+    {"map", TEXT(MAP_TCP), readers_map_words, readers_map, NULL, 0},
+    {"serial", TEXT(MAP_SERIAL), readers_map_words, readers_map, NULL, 0},
+    {"values", TEXT(MAP_VALUES), readers_map_words, readers_map, NULL, 0},
     {"inject",
      TEXT("0.500 q1 freeze for=0.1 # why\n612t rays nan for=inf\n0.7 reading delay by=0.02 for=0.2\n0.9 fault9 set\n"),
      script_words, read_script, grow_script, 128},
