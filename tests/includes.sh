@@ -1,6 +1,6 @@
 #!/bin/sh
 # Every include points to its own floor or to a lower one. From the ground up: lib's maths and its root; guard, scene,
-# solids, estimate and law; control; drivers; apps. A public header stands on the floor of the library that it links
+# solids, estimate and law; core; control; drivers; apps. A public header stands on the floor of the library that it links
 # from. Nothing but these rooms is kept at the top.
 top=$(git ls-files 2>/dev/null | cut -d/ -f1 | grep -v '^[.]' | LC_ALL=C sort -u | tr '\n' ' ')
 case $top in

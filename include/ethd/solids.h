@@ -51,6 +51,8 @@ ETHD_API bool ethd_body_pose3_is_valid(const ethd_body_pose3 *pose) ETHD_RT;
    counts (of equal ones the last of x, y, z). n is always a unit vector; where the gradient is undefined (at a sphere's
    centre, on a capsule's axis) it may be any. Points are exact to 1e-12 times the extent of solids, pose and x. There
    is none if range is NaN, x isn't within 1e100 m, or the pose isn't valid (ethd_body_pose3_is_valid says so).
+   Bounds are asked first. On one x86-64 core that is 7 ns where x is far from all, else 2 ns for each solid, and 13 to
+   28 ns for each that is found (make bench WHAT=scene).
 
    id is the object's number in the text, from 0, and material an index of ethd_solids_material. A world of several
    solids needs ids that differ: its owner adds to those of each the counts of all before (ethd_solids_describe), to

@@ -1,10 +1,13 @@
-/* Scene queries beside other libraries': the nearest of n segments, its distance, point and normal. */
+/* Scene queries beside other libraries': the nearest of n segments, its distance, point and normal. Then solids of space,
+   alone. */
 #include <math.h>
+#include <stdlib.h>
 
 #include "bench/bench.h"
 #include "bench/scene_world.h"
 #include "cli/cli.h"
 #include "clock.h"
+#include "ethd/solids.h"
 
 enum { OURS, LOOSE, EMBREE, CGAL, CONTENDERS };
 enum { SIZES = 6, LAST = SIZES - 1 };
@@ -160,6 +163,49 @@ static void judge(void) {
   bench_goal("memory of 100000", 1e-6 * fmax(contour->bytes, random->bytes), 12, "MB");
 }
 
+/* ---- solids ---- */
+
+enum { SOLIDS = 1000 }; /* in a cube of 1 m about the origin */
+
+typedef struct solids_asked {
+  const ethd_solids *solids;
+  ethd_vec3 x;
+  double range;
+} solids_asked;
+
+static void ask_solids(void *data) {
+  const solids_asked *a = data;
+  ethd_surface nearest;
+  bench_sink = (double)ethd_solids_surfaces(a->solids, NULL, a->x, a->range, &nearest, 1);
+}
+
+/* Times a query far from all, one with none within range, and one that finds all. */
+static void run_solids(const char *shape, const char *sizes_of, int quick) {
+  char *text;
+  size_t length;
+  ethd_solids *solids;
+  FILE *out = open_memstream(&text, &length);
+  for (int i = 0; i < SOLIDS; i++)
+    fprintf(out, "%s %g %g %g %s\n", shape, i / 100 / 10. - 0.45, i / 10 % 10 / 10. - 0.45, i % 10 / 10. - 0.45,
+            sizes_of);
+  fclose(out);
+  if (ethd_solids_parse(text, length, &solids, NULL)) ethd__fail(ETHD_EXIT_FAILED, "no solids");
+  solids_asked asked[] = {{solids, {3, 0, 0}, 0.06}, {solids, {0, 0, 0}, 0.06}, {solids, {0, 0, 0}, 10}};
+  bench_entry entries[3];
+  for (int i = 0; i < 3; i++) entries[i] = (bench_entry){shape, ask_solids, &asked[i], i ? SOLIDS : 1, 0};
+  bench_race(entries, 3, quick ? 1e-3 : 2e-2);
+  printf("    %-10s%18.3g%18.3g%18.3g\n", shape, entries[0].ns, entries[1].ns, entries[2].ns);
+  ethd_solids_destroy(solids);
+  free(text);
+}
+
+static void print_solids(int quick) {
+  printf("  %d solids of space, ns\n    %-10s%18s%18s%18s\n", SOLIDS, "", "far from all", "each, not near",
+         "each, found");
+  run_solids("sphere", "0.01", quick);
+  run_solids("box", "0.01 0.01 0.01 1 1 1", quick);
+}
+
 static void run(const char *folder, int quick) {
   static const char *const files[CONTENDERS] = {[EMBREE] = "embree", [CGAL] = "cgal"};
   printf("scene: the nearest of n segments, its distance, point and normal\n"
@@ -179,6 +225,7 @@ static void run(const char *folder, int quick) {
   for (int kind = 0; kind < ETHD__WORLDS; kind++)
     for (int ask = ETHD__ASKS - 1; ask >= 0; ask--) print_question(kind, ask);
   print_builds();
+  print_solids(quick);
   judge();
   FILE *csv = bench_csv(
       folder, "scene",
