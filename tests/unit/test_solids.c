@@ -102,6 +102,7 @@ TEST(test_range_order_room) {
   ck_assert_uint_eq(ethd_solids_surfaces(s, NULL, x, 0.999, out, 8), 0);
   ck_assert_uint_eq(ethd_solids_surfaces(s, NULL, x, 1.237, out, 8), 4);
   ck_assert_uint_eq(ethd_solids_surfaces(s, NULL, x, 1.236, out, 8), 1);
+  ck_assert_uint_eq(ethd_solids_surfaces(s, NULL, (ethd_vec3){0, 0, 50}, 48, out, 8), 0); /* beyond them all */
   ck_assert_uint_eq(ethd_solids_surfaces(s, NULL, (ethd_vec3){5, 0, 0}, -0.5, out, 8), 1);
   ck_assert_uint_eq(ethd_solids_surfaces(s, NULL, (ethd_vec3){5, 0, 0}, -1.5, out, 8), 0);
   ck_assert_uint_eq(ethd_solids_surfaces(s, NULL, (ethd_vec3){5, 0, 0}, -INFINITY, out, 8), 0);
