@@ -112,7 +112,7 @@ static void warn(const ethd__trace_in *in, size_t row, const char *what, const c
           then);
 }
 
-/* The guard does what it is there for; a law that fails is a failure. */
+/* A reaction of the guard is no failure; a law that fails is one. */
 static bool is_guards(int64_t fault) { return fault == ETHD_FAULT_SPEED || fault == ETHD_FAULT_WORKSPACE; }
 
 /* Steps through all rows; the first fault of either kind is said, the rest still runs. */

@@ -15,7 +15,7 @@ static const char doc[] =
     "a README.md that says what each file and column is; ethd-report draws it. A session that was stopped, killed "
     "or ran out of disk goes on with --resume: no tap is lost, repeated or torn. All that happens is put into the "
     "folder's "
-    "study.sqlite (SQLite; keep it on a local disk, since network file systems don't lock it reliably), of which the "
+    "study.sqlite (SQLite; keep it on a local disk, since network file systems don't lock it reliably). The "
     "tables are "
     "written at the end of each sitting and by --export. Simulated participants are "
     "plausible, not measured; they answer no survey. With \"[hand] source = people\" the configuration's device is "

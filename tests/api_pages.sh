@@ -1,6 +1,6 @@
 #!/bin/sh
 # make doc: every public function has a page, and there is no warning. A function without a contract, or whose contract
-# doesn't say which threads may call it, which failures it returns or in which unit its numbers are, is found.
+# doesn't say which threads may call it, which failures it returns, or the unit of its numbers, is found.
 . tests/begin.sh
 made() { B=$folder/build VERSION=1 sh .packaging/doc >"$folder/out" 2>&1; }
 made || { cat "$folder/out"; exit 1; }

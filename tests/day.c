@@ -1,5 +1,5 @@
 /* day FOLDER HOURS [MINUTES]: hours of simulated operation under one process, on the virtual clock: sessions of ten
-   minutes with their recordings, of which the last two stay; a swap or a new gain every 0.7 s, faults by a script that
+   minutes with their recordings (the last two are kept); a swap or a new gain every 0.7 s, faults by a script that
    is another one in each session, acknowledged and enabled again. Nothing may be lost: rows, ticks of the file, faults
    told; every eighth recording is replayed to the bit; memory stays what it was after the second session. For MINUTES
    of the day at most; run again, it goes on at the next session (FOLDER/state). One line a session. */

@@ -46,7 +46,7 @@ cp apps/config/wall.scene "$work"
 compiled driver ethd-drivers && "$work/driver" >"$work/driver.out" || fail "driver: exit $?: $(cat "$work/driver.out")"
 [ "$(grep -c ' kept ' "$work/driver.out")" = 10 ] || fail "driver: $(cat "$work/driver.out")"
 
-# the same source as a shared object, of which only the table is used: the installed programs drive it
+# the same source as a shared object; the installed programs use only its table
 compiled driver ethd-drivers -shared -fPIC && cp "$work/driver" "$work/driver.so"
 printf '[device]\ndriver = file:driver.so\n' >"$work/driver.ini"
 "$prefix/bin/ethd-conform" --config "$work/driver.ini" --virtual --move >"$work/driver.out" 2>&1 || fail "driver.so: exit $?: $(cat "$work/driver.out")"
@@ -62,7 +62,7 @@ cat >"$work/inside.c" <<'END'
 #include <ethd/cell.h>
 #include <pthread.h>
 #include <time.h>
-static ethd_cell *one_writer; /* of which every put takes a while, so that a second one meets it */
+static ethd_cell *one_writer; /* each put takes a while, so that a second one overlaps it */
 static _Atomic int putting, met;
 static void slow_put(ethd_cell *cell, const void *value) {
   if (cell == one_writer && putting++) met = 1;

@@ -93,7 +93,7 @@ hint=$(sed -n 's/.*; \(ethd-report .*\) draws .*/\1/p' out)
 [ "$hint" = "ethd-report --plugins 'a study'" ] || fail "the study's hint: $(cat out)"
 if gnuplot -e 'set terminal pngcairo' </dev/null 2>/dev/null; then does 'a study/report/report.html' sh -c "$hint"; fi
 
-# ---- a recording where a study is expected: what it is, and what shows it ----
+# ---- a recording where a study is expected: the message names it, and the program that shows it ----
 does 'Tapping study' ethd-tap --taps 1 --transition offset --speed low --record one
 for command in 'ethd-report' 'ethd-study --resume'; do
   says 2 'one: a recording, not a study.s folder: ethd-replay --verify one checks it, ethd-convert one NAME.csv' $command one

@@ -6,7 +6,7 @@ echo 'halfplane -1 0 -0.238' >"$folder/wall.scene"
 config() { printf '[plugins]\nfile = %s/tests/plugins/%s.so\n[scene]\nfile = wall.scene\n[transition]\nlaw = broken\n' "$BUILD" "$1" >"$folder/$1.ini"; }
 for plugin in hangs hangs_check exits exits_later writes_past rounds brief_escapes says_nan; do config $plugin; done
 
-# ends PLUGIN SECONDS PATTERN COMMAND...: exit 1 within so many seconds, and one line that says so
+# ends PLUGIN SECONDS PATTERN COMMAND...: exit 1 within SECONDS, and one line that names the plugin
 ends() {
   plugin=$1 most=$2 pattern=$3
   shift 3

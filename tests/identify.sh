@@ -36,7 +36,7 @@ awk '$1 == "mass_x" && ($3 < 0.1138 || $3 > 0.1208) || $1 == "mass_y" && ($3 < 0
   $1 == "stiffness" && $3 != "inf" { print "FAILED n.plant: " $0; bad = 1 } END { exit bad }' n.plant || failed=1
 grep -q '^hand_damping .*not seen, kept as in q$' n.plant || fail "what isn't seen isn't said"
 
-# An elastic arm likewise, whose transmission it tells from a rigid one.
+# The same for an elastic arm, whose transmission it tells from a rigid one.
 printf '[device]\nplant = p\n' >p.ini
 "$bin/ethd-identify" --excite --virtual --config p.ini --duration 6.158 --record elastic >/dev/null || fail "excite p: exit $?"
 "$bin/ethd-identify" elastic --out p.plant >said && "$bin/ethd-identify" elastic --out again.plant >/dev/null &&

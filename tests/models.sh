@@ -5,7 +5,7 @@
 command -v spin >/dev/null || { echo 'SKIP: spin isn'\''t there'; exit 77; }
 models=$(pwd)/tests/models
 
-# names MODEL: what it is a model of
+# names MODEL: the lines of the sources that it models
 names() {
   grep '^   = ' "$models/$1.pml" | sed 's/^   = //' >"$folder/lines"
   [ -s "$folder/lines" ] || fail "$1: it names no line"

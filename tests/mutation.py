@@ -48,7 +48,7 @@ def mutants_of(source):
 
 
 def sample(files):
-    """Returns all mutants in an order in which every prefix has each file's share."""
+    """Returns all mutants, ordered so that each file has its share of every prefix."""
     order, lines = [], {}
     for name in files:
         mutants, lines[name] = mutants_of(name)

@@ -1,4 +1,4 @@
-"""The build in which mutants live: all of lib and the ring's decoder as one shared library under the tests."""
+"""The build of the mutants: all of lib and the ring's decoder as one shared library under the tests."""
 import math
 import os
 import resource
@@ -9,7 +9,7 @@ DECODER = "drivers/proximity_ring/decoder.c"
 
 
 class Tree:
-    """A build of its own in which everything of lib is one shared library."""
+    """A separate build with all of lib as one shared library."""
 
     def __init__(self, build):
         self.build = Path(build).resolve()

@@ -170,7 +170,7 @@ if command -v gnuplot >/dev/null; then
     fail "latency.gp: $(cat "$folder/plot")"
 fi
 
-# cyclictest gets the loop's own conditions: what it is asked is looked at, and its histogram is the last column
+# cyclictest runs under the loop's own conditions: its arguments are checked, and its histogram is the last column
 mkdir "$folder/path"
 cat >"$folder/path/cyclictest" <<END2
 #!/bin/sh

@@ -19,7 +19,7 @@ broken reversed 'reversed 1; free' 0.04 'the arm runs away: an encoder or a moto
 # row 12: the arm goes and its encoder stands: 50 ms after the torque has risen by 0.35 Nm, of 0.9 in 0.1 s, and two exchanges
 when=asked first=free stiff=3600 broken frozen 'frozen 1' 0.11 'an encoder stands still under torque'
 
-# ticks from the last sample to the tick in which a row stopped the ring
+# ticks from the last sample to the tick at which a row stopped the ring
 ticks() { # NAME ROW MOST
   "$python3" - "$folder/$1" "$2" "$3" <<'END' || fail "row $2, $1: $(cat "$folder/$1.out")"
 import sys

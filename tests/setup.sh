@@ -13,7 +13,7 @@ stub() { # NAME LINES
   chmod +x "$folder/bin/$1"
 }
 uid() { stub id "[ \"\$*\" = -u ] && echo $1 || exit 1"; }
-says() { # WHAT MOST PATTERN...: set-up stops; at most so many lines; one for each pattern
+says() { # WHAT MOST PATTERN...: set-up stops, with at most MOST lines and one for each pattern
   what=$1 most=$2
   shift 2
   PATH=$folder/bin CC=no-such-compiler sh .ci/setup build >"$folder/out" 2>"$folder/err" && fail "$what: set-up goes on"
@@ -104,7 +104,7 @@ order() { LOCPATH=$folder LC_ALL=$1 ${MAKE:-make} --no-print-directory SETUP=no 
 order C >"$folder/order"
 grep -q '^APPS_C := apps/.* apps/' "$folder/order" || fail "no sources: $(cat "$folder/order")"
 if localedef -c -i en_US -f UTF-8 "$folder/en_US.UTF-8" >"$folder/out" 2>&1; then
-  order en_US.UTF-8 | cmp -s - "$folder/order" || fail 'the order in which objects are linked is the locale'"'"'s'
+  order en_US.UTF-8 | cmp -s - "$folder/order" || fail 'the order of the linked objects depends on the locale'"'"'s'
 fi
 [ $failed = 0 ] && echo 'what is missing is said'
 exit $failed

@@ -230,7 +230,7 @@ END
 read_all 'rows in a hole' 'tick.npy: has a hole: some of its 4000000 rows were never written'
 
 # ---- waits end by a signal, for files of one's own too ----
-# ends WHAT SIGNAL COMMAND...: within a few seconds of the signal, by which time it waits
+# ends WHAT SIGNAL COMMAND...: the command waits, and ends within a few seconds of the signal
 ends() {
   what=$1 signal=$2
   shift 2

@@ -156,7 +156,7 @@ printf '[study]\nparticipants = 1\nstrategies = smooth\nspeeds = 0.2\ntraining =
 talk 'tap ' 'pause\nreject a\nundo\naccept b, "c"\nreject d\ngo' "$study" "$folder/check.study" --out "$folder/check" --ask
 grep -q 'tap  .: rejected .* accepted: 0, rejected: 1$' "$folder/out" && grep -q 'tap  .: accepted .* accepted: 1, rejected: 0$' "$folder/out" || fail "checked: $(cat "$folder/out" "$folder/err")"
 [ "$(awk -F, '$5 ~ /ject|check|accept/ { printf "%s %s,", $5, $6 }' "$folder/check/events.csv")" = 'reject a,uncheck ,accept "b,reject d,' ] || fail "the checks: $(cat "$folder/check/events.csv")"
-counted() { # VALID ACCEPTED REJECTED of P01; and so many rows of each in taps.csv
+counted() { # VALID ACCEPTED REJECTED of P01, which are also the numbers of rows in taps.csv
   [ "$(awk -F, 'NR > 1 { print $7, $8, $9 }' "$folder/check/participants.csv")" = "$1 $2 $3" ] &&
     [ "$(awk -F, '$31 == "rejected"' "$folder/check/taps.csv" | wc -l)" = "$3" ] && [ "$(awk -F, '$31 == "accepted"' "$folder/check/taps.csv" | wc -l)" = "$2" ] ||
     fail "not $*: $(cat "$folder/check/participants.csv" "$folder/check/taps.csv")"

@@ -33,7 +33,7 @@ def store(folder):
 
 
 class Station:
-    """A session that is begun, or gone on with, and killed so many times at random."""
+    """A session that is begun or resumed, and killed several times at random."""
 
     def __init__(self, study, folder, name, options):
         self.command = [study, "--quiet"] + options
@@ -159,7 +159,7 @@ def reject(hand, station):
 
 
 def cycle(hand, station):
-    """Whatever page is shown, it takes some of these keys and the others do no harm: consent, instruction, block, a tap,
+    """Every page takes some of the keys, and ignores the others: consent, instruction, block, a tap,
     answers, their confirmation, the hand-over, the end."""
     cells = sum(r["participant"] == "P13" and r["part"] == "test" for r in rows(station.folder + "/orders.csv"))
     hand.keys("y space")

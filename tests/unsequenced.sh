@@ -1,6 +1,6 @@
 #!/bin/sh
 # No operand writes what another one of the same expression uses: the order is the compiler's. Looks at lib;
-# ETHD_UNSEQUENCED=all: at drivers, apps and tests as well, as make ci does. First at a file of which every answer is known.
+# ETHD_UNSEQUENCED=all: at drivers, apps and tests as well, as make ci does. First, at a file with known answers.
 . tests/begin.sh
 python3=${PYTHON:-python3}
 cat >"$folder/known.c" <<'END'
@@ -60,7 +60,7 @@ code=$?
 [ $code = 0 ] || [ $code = 3 ] || { echo "FAILED: tests/unsequenced.py: exit $code"; failed=1; }
 if [ -s "$folder/said" ]; then
   cat "$folder/said"
-  echo "FAILED: make each of these a statement of its own"
+  echo "FAILED: write each of them as a statement of its own"
   failed=1
 fi
 echo "$(echo "$files" | wc -l) files of $tops"

@@ -11,7 +11,7 @@ readers=$("$BUILD/tests/volume") || { echo "volume: build it: make $BUILD/tests/
 share=$((inputs / $(echo "$readers" | wc -l)))
 end=$(awk -v now="$(date +%s)" -v m="$minutes" 'BEGIN { printf "%.0f", now + 60 * m }')
 
-# slice READER COUNT: so many more inputs of it; the state is replaced when they are through
+# slice READER COUNT: runs COUNT more inputs of a reader, then replaces its state
 slice() {
   next=0 taken=0 spent=0
   [ ! -f "$state/$1" ] || read -r next taken spent <"$state/$1"

@@ -16,7 +16,7 @@ import numpy as np
 LAWS = ("offset", "smooth", "abrupt")
 PATIENCE = 30  # s a strategy
 ACKNOWLEDGED = 30  # times in a study
-RETURN = 500  # ticks in which a ring that had no torque comes back to the finger, and out of the wall
+RETURN = 500  # ticks until a ring that had no torque is back at the finger, and out of the wall
 BEHIND = 0.006  # m that a ring under torque may be behind the wall's surface
 
 

@@ -24,7 +24,7 @@ static void feel(ethd__subject *s) {
            ETHD_LOOP_FELT_X, ETHD_LOOP_FELT_Y, f->stiffness[0], f->stiffness[1], f->stiffness_across, f->damping[0],
            f->damping[1], f->damping_across);
   else if (!ethd_law_gains(&setup->tracking->law) || !ethd_law_gains(&setup->tracking->law)->stiffness)
-    printf("tracking     %s names no stiffness: what it is at the ring isn't known\n", setup->tracking->law.id);
+    printf("tracking     %s names no stiffness, so its stiffness at the ring is unknown\n", setup->tracking->law.id);
   else
     printf("tracking     not checked: (%g, %g) is out of this arm's reach\n", ETHD_LOOP_FELT_X, ETHD_LOOP_FELT_Y);
 }

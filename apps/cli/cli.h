@@ -48,7 +48,7 @@ const char *ethd__option_picture(const char *option, const char *text);
 /* Exits 2 if the output is the input's file; NULL: there is none. */
 void ethd__refuse_input(const char *option, const char *output, const char *input_option, const char *input);
 
-/* Exits 2 if two outputs would be one file, of which the second would replace the first; NULL: there is none. */
+/* Exits 2 if two outputs are one file, where the second would replace the first; NULL: no such output. */
 void ethd__refuse_same(const char *option, const char *output, const char *other_option, const char *other);
 
 /* Calls `each` for every word of a comma-separated list; exit 2 on an empty word. */

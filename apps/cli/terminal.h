@@ -18,7 +18,7 @@ bool ethd__streams_detach(void);
 /* Waits until all of stdout is written, as long as its reader reads. Returns 0, or errno of a failed write; *dropped: bytes that were not read in time. Flushes nothing. [main] */
 int ethd__stdout_end(uint64_t *dropped);
 
-/* Takes away the line of stderr's terminal in which the cursor is. [any] */
+/* Clears the cursor's line of the terminal on stderr. [any] */
 void ethd__terminal_erase_line(void);
 
 /* Returns false while the program is in the background of the terminal at stdin, whose lines are then for others.

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #define STACK ((size_t)128 << 10)
-#define PIECE 4096    /* bytes: a pipe that poll calls ready takes so many at once */
+#define PIECE 4096    /* bytes that a pipe takes at once when poll calls it ready */
 #define LOOK 1000000  /* ns between two checks in ethd__writer_end */
 #define UNREAD 300    /* checks in a row at which the descriptor isn't writable: then it gives up */
 #define PATIENCE 5000 /* checks at most */

@@ -6,7 +6,7 @@
 #include "identify/shooting.h"
 
 #define STEP_ANGLE 1e-6 /* rad, and */
-#define STEP_SPEED 1e-4 /* rad/s, by which a state is changed to find its slopes by differences */
+#define STEP_SPEED 1e-4 /* rad/s: step of a state for slopes by finite differences */
 #define STIFF 1e4       /* 1/s: friction that stops a joint faster would take the simulator thousands of steps a tick */
 
 int ethd__arm_states(const ethd_plant *plant) {

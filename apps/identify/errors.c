@@ -10,7 +10,7 @@
 #define FEW 16       /* windows: a recording with fewer isn't fitted by itself */
 #define ALONE 20     /* evaluations of the fit of a recording by itself */
 #define STRANGE 0.05 /* recordings whose masses differ by more than this in their logarithm, */
-#define CERTAIN 6    /* and by more than so many standard errors, are of different devices */
+#define CERTAIN 6    /* and by more than this number of standard errors, belong to different devices */
 
 typedef double square_matrix[N][N];
 
@@ -113,7 +113,8 @@ void ethd__fit_errors(ethd__shooting *p, double errors[ETHD__UNKNOWNS], double s
 
 /* ---- recordings of another device ---- */
 
-/* Fits the masses to the windows of one recording alone: their logarithms, and standard errors of these. False: too few windows, or they don't determine the masses. */
+/* Fits the masses to the windows of one recording alone. Gives their logarithms and the standard errors of the logarithms. False:
+   too few windows, or they don't determine the masses. */
 static bool weigh(const ethd__shooting *p, uint32_t recording, double mass[2], double error[2]) {
   double errors[N];
   ethd__shooting own;

@@ -14,8 +14,8 @@
 #include "text/file.h"
 #include "text/text.h"
 
-#define DEEP 3    /* levels of folders below the one that is named, in which recordings are looked for */
-#define SOFT 0.15 /* s after a start in which the torque may rise softly; no recording says whether it does */
+#define DEEP 3    /* levels of subfolders that are searched for recordings */
+#define SOFT 0.15 /* s: longest soft start of the torque; a recording doesn't tell whether there was one */
 
 static char *join(const char *folder, const char *name) {
   char *path = ethd__path_join(folder, name);
@@ -25,7 +25,7 @@ static char *join(const char *folder, const char *name) {
 
 /* ---- one recording ---- */
 
-/* Marks the ticks in which the device had the row's torque: not after a stop or a fault, and not while the torque rises. */
+/* Marks the ticks at which the device applied the row's torque: not after a stop or a fault, and not during a soft start. */
 static unsigned char *armed_ticks(const ethd__record_events *events, const ethd_trace *rows, size_t count,
                                   double period) {
   unsigned char *armed = malloc(count + 1);

@@ -11,7 +11,7 @@
 
 #define ETHD__BACK 8 /* ticks before the first that counts whose commands are kept: the longest delay */
 
-/* Consecutive ticks in which the device had the commanded torque and the finger wasn't near the ring. */
+/* Consecutive ticks at which the device applied the commanded torque and the finger wasn't near the ring. */
 typedef struct ethd__passage {
   size_t first, count;
   uint32_t recording;
@@ -39,7 +39,7 @@ typedef struct ethd__evidence {
   char **folders; /* one for each recording */
   uint32_t recording_count;
   size_t touched, unarmed; /* ticks left out: finger near; torque unknown */
-  double clipped;          /* share of the moving ticks in which the guard cut the torque */
+  double clipped;          /* share of the moving ticks at which the guard cut the torque */
   size_t not_numbers;      /* ticks with NaN as angle or torque */
   size_t uneven;           /* ticks that don't follow the one before by a period */
 } ethd__evidence;

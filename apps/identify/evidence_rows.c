@@ -8,7 +8,7 @@
 
 #define NEAR 0.6       /* of the gap between finger and ring: a finger farther out may touch before the next reading */
 #define APART 12e-3    /* s before and after a reading that is near which are left out */
-#define PACE 0.25      /* of a period, by which the time between two samples may differ from it */
+#define PACE 0.25      /* largest deviation of a sampling interval from the period, in periods */
 #define TORQUE_MAX 1e4 /* Nm: no device was commanded more */
 #define CLIPS (ETHD_GUARD_TORQUE | ETHD_GUARD_RATE)
 
@@ -96,7 +96,7 @@ static void cut(ethd__evidence *e, const ethd_trace *rows, size_t count, const u
   }
 }
 
-/* Updates the share of ticks in which the guard cut the torque, over all rows so far. */
+/* Updates the share of ticks at which the guard cut the torque, over all rows so far. */
 static void note_clipped(ethd__evidence *e, const ethd_trace *rows, size_t count, const unsigned char *good) {
   size_t clipped = 0, counted = 0;
   for (size_t i = 0; i < count; i++) {

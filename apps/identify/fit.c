@@ -7,7 +7,7 @@
 #include "cli/cli.h"
 
 #define QUICK 30    /* windows on which starts compete, */
-#define BRIEF 20    /* with so many evaluations each */
+#define BRIEF 20    /* evaluations of each */
 #define LONG 60     /* evaluations of the fit */
 #define WINDOWS 480 /* windows of the fit: two minutes */
 #define REACHED 30  /* ticks whose command is beyond a torque limit that show the limit */
@@ -25,7 +25,7 @@ static const ethd__chosen compliant = {{ETHD__MASS_X, ETHD__MASS_Y, ETHD__FORCE_
 
 /* ---- model ---- */
 
-/* Returns the factor by which correlation of the residuals enlarges their variance; 1 for white residuals. */
+/* Returns the variance inflation from correlated residuals; 1 for white residuals. */
 static double dependence(const ethd__shooting *p, const double *residual) {
   enum { LAGS = 20 };
   double sums[LAGS + 1] = {0}, factor = 1;

@@ -138,7 +138,7 @@ static bool runs_away(const flock *f) {
   return !(most < FAST);
 }
 
-/* Reads the arms that are due off the step in which tick k lies, `begun` after the step's beginning. */
+/* Interpolates the arms that are due at tick k within the current step, which began `begun` before it. */
 static void read_off(const flock *f, const double *begun, int k, bool due[ETHD__ARMS]) {
   for (int i = 0; i < f->count; i++) {
     if (!due[i] || begun[i] > f->step.length[i]) continue;

@@ -7,9 +7,9 @@
 #include "text/error_text.h"
 
 #define LEAST 1e-9   /* rad: smaller differences of two angles are rounding */
-#define LATTICE 0.02 /* counts by which angles may miss the lattice */
+#define LATTICE 0.02 /* largest distance of an angle from the lattice, counts */
 #define ALIKE 1e-3   /* relative difference that two estimates of one encoder's count may have */
-#define TOGETHER 1.5 /* readings follow each other if they are less than so many median periods apart */
+#define TOGETHER 1.5 /* readings are consecutive if less than this number of median periods lies between them */
 #define ORDERS 4     /* orders of differences: a high one removes a smooth motion and leaves noise */
 
 /* ---- counts ---- */
@@ -159,7 +159,7 @@ static size_t differences(const ethd__evidence *e, double pace, int order, doubl
   return n;
 }
 
-/* Touches, in which the finger turns sharply, are left out; medians withstand other sharp turns. */
+/* Touches are left out, because the finger turns sharply there; medians are robust to other sharp turns. */
 static void find_noise(const ethd__evidence *e, double pace, double *room, ethd__bracket *out) {
   for (int order = 1; order <= ORDERS; order++) {
     size_t n = differences(e, pace, order, room);

@@ -10,7 +10,7 @@
 #define SETTLINGS 40 /* improvements of a window's state at most, until its squares fall by less than this share: */
 #define SETTLED 1e-9
 #define MOVED 1e-5     /* a state whose squares fall by a smaller share has hardly moved, and its slopes stay */
-#define STEP 3e-4      /* by which a coordinate is changed to find its slope by differences */
+#define STEP 3e-4      /* step of a coordinate for a slope by finite differences */
 #define DEPENDENT 1e-5 /* slope vectors whose independent part is below this share are dropped as dependent */
 
 /* ---- windows ---- */

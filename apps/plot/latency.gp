@@ -1,4 +1,4 @@
-# How late the loop woke and how long its ticks took: of so many, how many took longer.
+# Complementary distribution of the loop's wake-up latency and of its tick time.
 #   gnuplot -e "in='latency.csv'; out='latency.png'" latency.gp
 # in: a file of ethd-latency --csv.
 if (!exists("in") || !exists("out")) { print "latency.gp: set in and out: gnuplot -e \"in='latency.csv'; out='latency.png'\" latency.gp"; exit status 2 }

@@ -36,7 +36,7 @@ set rmargin at screen 0.92
 set border 11 lc rgb grey
 set ytics nomirror
 set y2tics 2 textcolor rgb "#c0392b"
-set y2range [-2:5] # a ring that goes deeper leaves the picture, in which the wall's offset is to be seen
+set y2range [-2:5] # a deeper ring leaves the picture, so that the wall's offset stays visible
 set y2label "in the wall, mm" offset -1 textcolor rgb "#c0392b"
 top(i) = 1 - (104.0 + 190.0*i)/high
 bottom(i) = top(i) - 140.0/high

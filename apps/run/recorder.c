@@ -24,7 +24,7 @@ void ethd__recorder_begin(ethd__recorder *r, double period) {
 
 ethd_status ethd__recorder_thinned(ethd__recorder *r) {
   char text[80];
-  snprintf(text, sizeof text, "1 tick of %" PRIu64 " is recorded, and those in which a fault begins", r->keeps);
+  snprintf(text, sizeof text, "1 tick of %" PRIu64 " is recorded, and each tick at which a fault begins", r->keeps);
   return ethd_recording_event(r->recording, "thinned", text);
 }
 

@@ -163,7 +163,7 @@ static ethd_status end_loop(ethd__session *s, char *message) {
   ethd_status status = ethd_loop_join(s->loop);
   ethd__recorder_end(&s->recorder);
   s->left = status && !ethd_loop_ended(s->loop);
-  s->lost = s->left && status != ETHD_E_LAW; /* no second thread enters a device in which one hangs */
+  s->lost = s->left && status != ETHD_E_LAW; /* a second thread must not enter a device where one hangs */
   if (s->left)
     tell_hang(s, status, message);
   else if (status)

@@ -9,7 +9,7 @@
 #define WIDE 0.88   /* of the window that a line may take */
 #define MARGIN 0.02 /* of its height, above and below */
 #define GAP 0.35    /* of a line, between paragraphs */
-#define STEP 0.92   /* by which letters shrink at a time */
+#define STEP 0.92   /* factor of the letters' size at each step */
 #define LEAST 0.3   /* to which they do */
 
 void ethd__page_add(ethd__page *page, int size, const char *text, SDL_Color colour) {

@@ -191,7 +191,7 @@ static ethd__wish wish(void *self, bool over, char words[ETHD_MESSAGE_MAX]) {
 
 /* ---- after a tap ---- */
 
-/* The speed by which the tap is judged, and which speeds count. */
+/* The commanded speed of the tap, and the band of valid speeds. */
 static void verdict(void *self, const char *participant, const ethd__taken *taken, const ethd__tally *tally) {
   ethd__screen *s = self;
   const ethd__metrics *m = &taken->result.metrics;

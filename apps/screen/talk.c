@@ -63,7 +63,7 @@ ethd__wish ethd__screen_meet(void *self, const ethd__meeting *meeting) {
 
 #define LINE_ROOM 256 /* bytes that an answer in words takes at most */
 
-/* Bytes of whole letters, at most so many. */
+/* Length of the longest prefix of whole letters within a number of bytes. */
 static size_t bytes_within(const char *text, size_t most) {
   size_t n = strlen(text);
   if (n <= most) return n;

@@ -34,11 +34,11 @@ typedef struct ethd__window {
   void (*moved)(void *user, int64_t ns); /* each motion of the pointer as it comes, between frames too; NULL: nobody */
   void *mover;
   int key;        /* SDLK_* pressed since the last frame, 0: none */
-  char typed[64]; /* text likewise */
+  char typed[64]; /* text that was typed since then */
   bool closed, resized;
   bool covered;          /* what was shown may be gone */
   uint64_t begun;        /* of the present frame, in SDL's performance counts */
-  uint64_t due;          /* likewise, of the next */
+  uint64_t due;          /* when the next one is due */
   ethd_histogram frames; /* ns from a frame's begin to its end on the screen, of those that changed something */
   ethd__window_shape shape[ETHD_SHAPES_MAX];
   size_t shape_count, shape_before; /* of this frame so far, of the one before */

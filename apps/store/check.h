@@ -11,8 +11,8 @@ typedef struct ethd__store_file {
   bool cut;     /* its last transaction was cut short, and is rolled back when the store is opened to write */
 } ethd__store_file;
 
-/* Looks at a file. Refuses a link, a pipe and the like, a file with a hole, one of which SQLite would follow a log or
-   another journal, one in which a program is at work; and none, where a journal of an earlier version is. */
+/* Looks at a file. Refuses a link, a pipe and the like, a file with a hole, a file for which SQLite would read a log or
+   another journal, and a file that another program has open. Refuses a missing file beside a journal of an earlier version. */
 ETHD_MUST_CHECK ethd_status ethd__store_look(const char *path, ethd__store_file *out, char message[ETHD_MESSAGE_MAX]);
 
 /* Refuses an open store whose mark, tables, rows or hash aren't those of this study. */

@@ -14,7 +14,7 @@
 
 #define READ_ONLY "?mode=ro&immutable=1" /* no lock, no journal: nothing is written, whatever the file says */
 #define CELL_MAX (1 << 24)               /* bytes of a cell, or of a statement in the file */
-#define PATIENCE 5 /* s in which a received file must be read, and one more for each so many bytes */
+#define PATIENCE 5 /* s: time limit for reading a received file, plus one for each PATIENCE_BYTES */
 #define PATIENCE_BYTES 10000000
 #define BEAT 10000 /* steps of SQLite between two looks at the clock */
 

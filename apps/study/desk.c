@@ -112,7 +112,7 @@ ethd_status ethd__desk_prepare(ethd__desk *desk, const ethd__turn *turn, ethd__t
 
 const char *const ethd__hand_words[ETHD_HAND_SOURCES] = {"device", "mouse", "simulated", "recorded"};
 
-/* Says which law fails, once and not for each tap, all of which are faults. */
+/* Names a law that fails once, and not for each tap; all its taps are faults. */
 static void tell_law(ethd__desk *desk, const ethd__law_fault *fault) {
   char text[ETHD_MESSAGE_MAX];
   if (!fault->law || fault->law == desk->told) return;

@@ -124,7 +124,7 @@ uint32_t ethd__folder_simulated(const char *folder) {
   return people;
 }
 
-/* Says of a folder without a study what it is, if that can be told, and which program shows it. */
+/* Names the kind of a folder without a study, if known, and the program that shows it. */
 static ethd_status no_study(const char *folder, ethd_status status, char *message) {
   char *ticks = existing(folder, ETHD_RECORDING_TICK), *study = existing(folder, ETHD_STUDY_FILE);
   if (ticks && !study)

@@ -1,11 +1,11 @@
-/* A study's folder holds what was asked for, on which device, and by which program. All [main].
+/* A study's folder: protocol, device, versions and data. All [main].
 
      study.ini      the study file, as it was read
      config.ini     the controller's configuration; scene.scene its walls; device.plant the simulated device
      movement.csv   the recorded movement, when all hands follow one; movements/ when they follow several
      conditions.csv the table of conditions, when the study has one
      device.folder  with people in a device: where relative paths of its settings start
-     versions.txt   program, compiler, and the hash: SHA-256 of all of these but device.folder, one after another
+     versions.txt   program, compiler, and the hash: SHA-256 of all files above but device.folder, concatenated
      README.md      the data dictionary, with JSON sidecars for programs; orders.csv, what is planned */
 #ifndef ETHD__APPS_STUDY_FOLDER_H
 #define ETHD__APPS_STUDY_FOLDER_H

@@ -1,4 +1,4 @@
-/* What a participant does, in which order.
+/* The order of a participant's blocks.
 
    A block is a strategy at a speed. Speeds come in the file's order, strategies counterbalanced: participant
    p (from 0) trains with strategy p mod K and taps in p+1, p+2, .. p mod K. For two strategies that is the

@@ -14,7 +14,7 @@
      record = all      none               lift = 0.005            m off the wall and back: a double tap
      rest = 3          blocks, 0: never   slack = 0.0004          m: so near to the ring people's fingers touch it
      conditions = FILE.csv                columns transition and speed, a row for each condition, in the place of
-                                          strategies and speeds, of which all combinations are conditions
+                                          strategies and speeds; each combination is a condition
 
      [device]                             [grid]                  --simulate: every combination
      config = q.ini                       contact.k_e = 1000,2500

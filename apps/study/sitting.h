@@ -1,4 +1,4 @@
-/* A sitting: the time in which a session's folder is open. What happens in it goes into the store. All [main]. */
+/* A sitting: a session's folder from opening to closing. All events go into the store. All [main]. */
 #ifndef ETHD__APPS_STUDY_SITTING_H
 #define ETHD__APPS_STUDY_SITTING_H
 

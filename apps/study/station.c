@@ -13,7 +13,7 @@
 #define BEAT 20000000 /* ns */
 #define LOOK 1000000  /* ns between two looks at a tap */
 #define LEFT 0.004    /* m that the finger must move in a tap, as on the screen */
-#define CLEAN 3.0     /* s in which an acknowledged device must have come to rest */
+#define CLEAN 3.0     /* s until an acknowledged device must be at rest */
 
 static void rest(long ns) {
   const struct timespec t = {.tv_nsec = ns};

@@ -15,7 +15,7 @@
 #define WINDOW 0.2    /* s over which the speed counts */
 #define AWAY 0.05     /* m before the wall: where the finger rests, or comes from */
 #define REST 0.6      /* s of a try in free space */
-#define COME 0.5      /* s in which a finger that presses comes to the wall */
+#define COME 0.5      /* s until a pressing finger is at the wall */
 #define PRESS 1.2     /* s of its try */
 #define FORCE 2.5     /* N with which it presses */
 #define FIRST_TAP (UINT64_C(1) << 41) /* no other tap has these numbers */

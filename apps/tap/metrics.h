@@ -17,8 +17,8 @@
 
 #include "ethd/sim.h"
 
-#define ETHD_TAP_REBOUND 0.1       /* s after the touch in which v_rmin is looked for */
-#define ETHD_TAP_HYSTERESIS 0.1e-3 /* m by which the ring must turn back to make an extremum: a hum makes none */
+#define ETHD_TAP_REBOUND 0.1       /* s after the touch: window of v_rmin */
+#define ETHD_TAP_HYSTERESIS 0.1e-3 /* m: smallest reversal that ends an extremum; a smaller oscillation doesn't count */
 
 /* Ticks of one tap, oldest first; truth[i] belongs to trace[i]. */
 typedef struct ethd__tap_rows {
@@ -33,7 +33,7 @@ typedef struct ethd__tap_rows {
               ring was there (felt.h): a law that stops the ring before the wall is judged by the same taps */
 typedef enum ethd__validity { ETHD_TAP_BY_PAPER, ETHD_TAP_BY_FINGER } ethd__validity;
 
-/* The rule by which a tap is judged. */
+/* The rule of validity of a tap. */
 typedef struct ethd__rule {
   ethd_vec n;         /* of the wall, into it */
   double period;      /* s */

@@ -9,9 +9,9 @@
 #include "tap/summary.h"
 
 #define FEWEST 6       /* valid taps that make a statistic */
-#define TURN 0.3e-3    /* m by which the ring turns back in an oscillation, */
+#define TURN 0.3e-3    /* m: smallest reversal of an oscillation, */
 #define TURN_END 0.1   /* s after t_r/vo */
-#define BEYOND 1e-3    /* m by which the ring may be behind x_eps, */
+#define BEYOND 1e-3    /* m: largest distance of the ring behind x_eps, */
 #define HELD 0.06      /* s after vo */
 #define TIME_MAX 20    /* ms, of Delta_s */
 #define DEPTH_MAX 3e-3 /* m, of eps */

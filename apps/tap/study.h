@@ -83,7 +83,7 @@ void ethd__stage_close(ethd__stage *stage);
 ETHD_MUST_CHECK ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__speed *speed, uint64_t tap,
                                              ethd_sim_tap *out);
 
-/* Returns the rule by which taps of this finger on this stage at this speed are judged. */
+/* Returns the rule of validity for taps of this finger on this stage at this speed. */
 ethd__rule ethd__stage_rule(const ethd__stage *stage, const ethd__speed *speed, double finger_radius);
 
 /* Returns the view that turns their ticks into tables. */

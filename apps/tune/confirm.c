@@ -7,7 +7,7 @@
 #define TAPS 3 /* taps at each speed under each disturbance */
 #define PRESS \
   300 /* ticks for which the finger goes on pressing after the tap: a bounce dies out in them, a limit cycle doesn't */
-#define REST 40 /* the last of these ticks, in which the ring must be at rest */
+#define REST 40 /* ticks at the end during which the ring must be at rest */
 #define SWING \
   0.01 /* m/s, rms about a line; a limit cycle between torque limits is faster: 5 N on 0.15 kg at 100 Hz make 0.038 */
 

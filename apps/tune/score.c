@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#define WINDOW 0.05 /* s before the wall in which tracking is judged */
+#define WINDOW 0.05 /* s before the wall over which tracking is judged */
 
 #define NAMES(name, unit, brief) #name "_low", #name "_high",
 const char *const ethd__tune_figure_names[ETHD_TUNE_FIGURE_COUNT] = {ETHD_TUNE_FIGURES(NAMES) "taps", "touched"};

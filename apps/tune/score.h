@@ -8,7 +8,7 @@
 #define ETHD_TUNE_SPEEDS 2 /* low and high */
 
 /* Every figure is better when it is smaller, and there is one for each speed. X(name, unit, description). They are means
-   over the taps in which the hand's own path crosses the wall at about that speed; eps, delta_s, d_max and v_touch over those with a touch that isn't early. */
+   over the taps whose hand path crosses the wall at about that speed; eps, delta_s, d_max and v_touch over those with a touch that isn't early. */
 #define ETHD_TUNE_FIGURES(X)                                                              \
   X(early, "1", "share of the taps with a touch before the ring meets the wall")          \
   X(lag, "m", "distance of ring and finger centres, rms, over the 50 ms before the wall") \
@@ -22,7 +22,7 @@ typedef struct ethd__tune_score {
 #define ETHD_TUNE_FIGURE(name, unit, brief) double name[ETHD_TUNE_SPEEDS];
   ETHD_TUNE_FIGURES(ETHD_TUNE_FIGURE)
 #undef ETHD_TUNE_FIGURE
-  double taps, touched; /* taps at each speed; those of both speeds in which the finger touched */
+  double taps, touched; /* taps at each speed; taps of both speeds with a touch */
 } ethd__tune_score;
 
 #define ETHD_TUNE_FIGURE_COUNT (sizeof(ethd__tune_score) / sizeof(double))

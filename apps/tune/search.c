@@ -8,7 +8,7 @@
 #include "text/error_text.h"
 
 /* A round runs 1/part of the last round's taps. It keeps the best points of the round before: `percent` of the number
-   of points in the first round. It draws `children` new points about each of these, within `spread` of the range. */
+   of points in the first round. It draws `children` new points about each survivor, within `spread` of the range. */
 static const struct {
   uint32_t part, percent, children;
   double spread;
@@ -16,9 +16,9 @@ static const struct {
 
 #define WORSE 1.1 /* times the configuration's figure: what is worse than that counts more, by the next factor */
 #define DEARER 10.0
-#define TAPS_LEAST 8 /* with fewer hardly a hand meets the wall at the speed asked for */
-#define LEAST 4      /* points that go on however small the search is */
-#define THIN 4       /* one point in so many that don't keep the margin is tapped too, to be seen beside the others */
+#define TAPS_LEAST 8      /* with fewer hardly a hand meets the wall at the speed asked for */
+#define LEAST 4           /* points that go on however small the search is */
+#define THIN 4            /* one in this number of points outside the margin is tapped too, for the comparison */
 #define DRAWS_A_POINT 128 /* points that are drawn at most for one that keeps the margin */
 
 /* ---- a round's points ---- */

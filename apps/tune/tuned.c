@@ -49,7 +49,7 @@ static void put_path(rewriting *w, const char *value, size_t length) {
   free(name);
 }
 
-/* Writes a line KEY = VALUE ; comment, of which only the value changes. */
+/* Writes a line KEY = VALUE ; comment with a new value. */
 static void put_key(rewriting *w, const char *line, size_t length) {
   const char *equals = memchr(line, '=', length), *end = line + length;
   size_t n = (size_t)(equals - line);

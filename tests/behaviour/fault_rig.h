@@ -1,4 +1,4 @@
-/* A whole tap in which something breaks: controller, loop on a virtual clock, a device, and behind the device's
+/* A whole tap with a fault: controller, loop on a virtual clock, a device, and behind the device's
    boundary the simulated arm with a finger in its ring.
 
      PLAIN    the arm as a driver of the test's own: what a sound sensor gives
@@ -63,10 +63,10 @@ struct fault_rig {
   uint16_t old_point;          /* not 0: the drive's first set-point is that, whatever is written */
   int32_t lazy;                /* 1: nobody takes the loop's rows */
   uint64_t lost;               /* rows, as those behind them say */
-  int64_t jump_ns;             /* by which the clock goes on in the loop's read */
+  int64_t jump_ns;             /* advance of the clock during the loop's read */
   int64_t shift_ns;            /* of the samples' instants */
   int64_t suspended;           /* ns for which the machine was, its clock with it */
-  int64_t lag;                 /* not 0: the drive gives speeds, so many ticks old, at least 1 */
+  int64_t lag;                 /* age, in ticks, of the speeds that the drive gives, at least 1; 0: it gives none */
   double law_adds;             /* Nm, to the tracking torque of joint 1 */
   ethd_status law_says;
   int64_t law_takes;    /* ns of the clock */
@@ -76,7 +76,7 @@ struct fault_rig {
   /* seen since fault_rig_mark */
   int64_t seen[ETHD_FAULT_COUNT], grave[ETHD_FAULT_COUNT]; /* tick, -1: not yet */
   uint64_t base[ETHD_FAULT_COUNT];
-  int64_t shows; /* tick in which what broke begins to show; -1: at once */
+  int64_t shows; /* tick at which the fault begins to show; -1: at once */
   int64_t marks; /* index marks of joint 1 that passed */
   double motor;  /* Nm at a joint: what a motor can give */
   double most;   /* Nm: the largest torque that the drive was told */

@@ -9,7 +9,7 @@ typedef struct fault_row {
   ethd_reaction reaction;
   int is_grave;
   fault_device device;
-  int first, last; /* ticks of the tap in which it may begin */
+  int first, last; /* first and last tick of the tap at which it may begin */
   int bound;       /* ticks */
   fault_inject inject;
   void (*change)(ethd_setup *setup);

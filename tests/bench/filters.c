@@ -14,7 +14,7 @@
 enum { LATENCIES = 3, REACHES = 40, SETS_MAX = 16 };
 
 static const double latencies[LATENCIES] = {0, 3e-3, 6e-3};
-static const double goals[LATENCIES] = {0.15, 0.25, 0.30}; /* share by which ca's error is less than cv's */
+static const double goals[LATENCIES] = {0.15, 0.25, 0.30}; /* least share of cv's error that ca saves */
 
 #define SETTLE 30 /* ticks: a filter starts at its first reading */
 

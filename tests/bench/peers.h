@@ -19,7 +19,7 @@ typedef struct ethd__peer_kinematics {
 } ethd__peer_kinematics;
 
 /* `peer_filter`: a Kalman filter of constant acceleration with 3x3 matrices, alike for both axes, which does what the
-   finger filter's `ca` does: it has the same start, fades likewise, and moves from sample to sample. An item of `in` is
+   finger filter's `ca` does: it starts in the same way, has the same fading memory, and moves from sample to sample. An item of `in` is
    a tick's reading x y and its age in s, NaN without one; an item of `out` is x y now. A tick takes `period`. */
 typedef struct ethd__peer_filter {
   const char *name;

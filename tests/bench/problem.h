@@ -8,7 +8,7 @@
 #include "bench/ode.h"
 #include "sim/body.h"
 
-/* The time between two of these: a tick, an update of the torque, a kink of the path. */
+/* The time between two events: a tick, an update of the torque, a kink of the path. */
 typedef struct ethd__stretch {
   double begin, end, torque[2];
   bool tick; /* 1: it begins at a tick */

@@ -9,7 +9,7 @@
 #include "unit/draw.h"
 
 #define WALL 0.238   /* m */
-#define AHEAD 0.002  /* s by which the ring is behind the finger */
+#define AHEAD 0.002  /* s: lag of the ring behind the finger */
 #define LATENCY 2e-3 /* s */
 #define NOISE 0.1e-3 /* m, of a reading or a ray */
 #define RATE 300.0   /* Hz */

@@ -54,7 +54,7 @@ void ethd__tick_cold(FILE *csv, int quick) {
 /* ---- live ---- */
 
 #define PERIOD 1000000 /* ns */
-#define EARLY 100000   /* ns by which an early loop wakes before the tick */
+#define EARLY 100000   /* ns: lead of an early loop over the tick */
 
 typedef struct live_loop {
   ethd__ticking *tapping;

@@ -1,4 +1,4 @@
-/* Its prepare, by which a check asks it without touching anything, never returns. */
+/* Its prepare, which a check calls without touching the device, never returns. */
 #include <ethd/driver.h>
 static ethd_status hang(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
   (void)def, (void)device, (void)message;

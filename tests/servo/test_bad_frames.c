@@ -1,4 +1,4 @@
-/* Every way in which one frame can be damaged by little: each length, each bit, each pair of bits; of the servo's own
+/* Small damage to one frame: each length, each bit, each pair of bits; of the servo's own
    framing and of the proximity ring's. Nothing damaged is taken for an answer or a frame, and how many cases there were
    is asserted, so that none is left out unseen. The answers are put together here, with the checksum of the test's own
    drive. */

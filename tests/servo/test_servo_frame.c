@@ -1,5 +1,5 @@
-/* Modbus frames of our own against frames that others published, and against every way in which an answer can be
-   wrong. */
+/* Modbus frames of our own against frames that others published, and against every kind of wrong
+   answer. */
 #include <modbus/modbus.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* The traps of a Modbus, into which plain libmodbus falls as its examples use it, and the link doesn't. Nothing here
-   measures time: what is compared is what was answered, and in which order. */
+   measures time: answers and their order are compared. */
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>

@@ -292,7 +292,7 @@ TEST(test_register_refused) {
   refused_behind("[register seen2]", "type = i16", "type = i16 ; x\nfoo = 1", "register seen2.foo: unknown key");
 }
 
-/* Without its position a torque is none, and likewise. */
+/* A torque needs its position, and a position its torque. */
 TEST(test_roles_refused) {
   static const char *const lean =
       "[bus]\ntransport = tcp\nport = a:1\n[register torque1]\ndirection = write\naddress = 0\ntype = i16\nunit = Nm\n"

@@ -21,7 +21,7 @@ typedef struct ring_board {
   ring *ring;
   int number;
   avr_t *avr;
-  avr_io_t io; /* by which resets are heard of */
+  avr_io_t io; /* notifies of resets */
   avr_run_t run;
   uint8_t ddr_b, ddr_c, ddr_d;
   bool scl_shorted;

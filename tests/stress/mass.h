@@ -58,7 +58,7 @@ void mass_push(mass_rig *r, ethd_vec push);
 /* Runs one tick: a step, then the mass moves for a period. */
 const ethd_trace *mass_tick(mass_rig *r);
 
-/* Run the two halves of a tick. A move without a step before it is a lost tick, in which the torque stays. */
+/* Run the two halves of a tick. A move without a step before it is a lost tick: the torque stays. */
 const ethd_trace *mass_step(mass_rig *r);
 void mass_move(mass_rig *r);
 

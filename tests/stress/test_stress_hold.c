@@ -13,7 +13,7 @@
 #define PERIOD 0.001
 #define MASS 0.1173
 #define SPEED 0.1        /* m/s at which the ring comes */
-#define SWING_TICKS 10   /* in which a swing has its largest step */
+#define SWING_TICKS 10   /* window of a swing's largest step */
 #define RESOLUTION 1e-12 /* m: of a joint angle on long links */
 
 typedef struct hold_case {

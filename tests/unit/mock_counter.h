@@ -10,7 +10,7 @@
 
 #define MOCK_EVENTS 1024
 
-/* A call that fails: on paths that end so (NULL: none), after so many that went well, with this errno. */
+/* A call that fails: its paths' ending (NULL: none), the number of calls that succeed before, the errno. */
 typedef struct mock_failure {
   const char *path;
   int after, reason;

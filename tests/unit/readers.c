@@ -125,7 +125,7 @@ static int read_npy(const char *text, size_t length) {
   return judged(status, message);
 }
 
-/* ---- what a device says, and what it is told to do wrong ---- */
+/* ---- frames of a device, and scripts of faults ---- */
 
 static void grow_frames(FILE *out, int rows) {
   for (int i = 0; i < rows; i++) {

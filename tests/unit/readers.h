@@ -12,7 +12,7 @@ typedef struct text_reader {
   const char *const *words; /* spliced into it, NULL ends */
   /* 1: taken, 0: refused in one line that names the text "x", -1: refused in another way. text[length] is 0. */
   int (*read)(const char *text, size_t length);
-  /* A text of so many rows that is taken; NULL: the reader bounds its input, or doesn't look at it all. */
+  /* Writes a text with this number of rows that is taken; NULL: the reader bounds its input, or doesn't read all of it. */
   void (*grow)(FILE *out, int rows);
   int rows; /* eight times as many are taken too */
 } text_reader;

@@ -27,7 +27,7 @@ void scene_add(object *o, double v);
 
 object scene_random(ethd_shape shape);
 
-/* A scene of these objects; of one. */
+/* A scene of several objects; of one. */
 ethd_scene *scene_build(const object *objects, size_t n);
 ethd_scene *scene_one(ethd_shape shape, size_t count, const double *p);
 #define SCENE_ONE(shape, ...) \

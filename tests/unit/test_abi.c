@@ -128,7 +128,7 @@ AT(ethd_plugin_entry, laws, 24, 8);
 AT(ethd_plugin_entry, law_count, 32, 4);
 _Static_assert(ETHD_PLUGIN_MIN == 36, "least");
 
-/* A driver's table may grow at its end; what it is opened with, too. */
+/* A driver's table may grow at its end; so may the struct that it is opened with. */
 AT(ethd_driver, size, 0, 4);
 AT(ethd_driver, abi, 4, 4);
 AT(ethd_driver, id, 8, 8);
@@ -162,7 +162,7 @@ AT(ethd_device_def, folder, 24, 8);
 AT(ethd_device_def, file, 32, 8);
 AT(ethd_device_def, is_virtual, 40, 4);
 
-/* A driver reads arrays of these, writes arrays of those. */
+/* A driver reads arrays of ethd_setting and writes arrays of ethd_figure. */
 SIZE(ethd_setting, 24, 8);
 AT(ethd_setting, key, 0, 8);
 AT(ethd_setting, value, 8, 8);
@@ -233,7 +233,7 @@ _Static_assert(ETHD_HAVE_DQ == 1 && ETHD_HAVE_FINGER == 2 && ETHD_HAVE_START == 
 _Static_assert(ETHD_TRACKING == 0 && ETHD_CONTACT == 1 && ETHD_TRANSITION == 2, "kinds");
 _Static_assert(ETHD_TRANSPARENT == 0 && ETHD_BRAKING == 1 && ETHD_VO == 2, "states");
 
-/* Recordings are made of these: 8-byte fields without a hole. */
+/* The rows of a recording: 8-byte fields without a hole. */
 #define COUNT_1(type, name) +1
 #define COUNT_2(type, name) +2
 #define COUNT_4(type, name) +4

@@ -48,7 +48,7 @@ TEST_LOOP(test_observer, 0, 3) {
   double closed = pow(1 - b, 3) * (13 + 50 * b + 49 * b * b) / (2 * pow(1 + b, 5)) / (T * T);
   ck_assert_double_eq_tol(squares / closed, 1, 1e-9);
   o = (ethd__ring_observer){0.3, 0.2, 0};
-  for (int i = 1; i <= 400; i++) { /* brakes at 3 m/s^2, of which the model knows 2 */
+  for (int i = 1; i <= 400; i++) { /* brakes at 3 m/s^2, where the model has 2 */
     double t = i * T, e = ethd__ring_predict(&o, -2, 0.3 - 0.2 * t + 1.5 * t * t, T);
     ethd__ring_correct(&o, e, b, T);
   }

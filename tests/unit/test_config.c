@@ -170,7 +170,7 @@ TEST(test_transition) {
   ck_assert_int_eq(ethd_config_transition(c, "kelvin-voigt", &s, message), ETHD_E_UNKNOWN);
   ck_assert_str_eq(message, refused_law("kelvin-voigt"));
   ck_assert(memcmp(&before, &s, sizeof s) == 0);
-  /* the other kinds likewise */
+  /* the same for the other kinds */
   ck_assert_int_eq(ethd_config_law(c, "velocity", "offset", &s, message), ETHD_E_ARGUMENT);
   ck_assert_int_eq(ethd_config_law(c, "contact", "offset", &s, message), ETHD_E_UNKNOWN);
   ck_assert(memcmp(&before, &s, sizeof s) == 0);

@@ -30,7 +30,7 @@ enum {
   COARSE,
   COASTS,
   BLOCKED,
-  ROLLS,   /* its stop takes 10 ms, in which the torque still acts, and without friction it rolls on */
+  ROLLS,   /* the torque acts until 10 ms after its stop, and without friction it rolls on */
   LATCHES, /* its own watchdog leaves a fault, which refuses the next start until it is cleared */
   WAYS
 };

@@ -1,4 +1,4 @@
-/* Laws that aren't built in: what they do beside their job is found at the tick in which they do it, and put back. */
+/* Laws that aren't built in: their side effects are found at the same tick and undone. */
 #include <fenv.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,7 +49,7 @@ TEST_LOOP(test_writes_past, 0, 6) {
   r.setup.transition_p[0] = _i;
   rig_start(&r);
   expect_found(&r, ETHD_TRANSITION, ETHD_E_FENCE);
-  /* what it wrote over is there again: the next one is found likewise */
+  /* the overwritten bytes are restored, so that the next violation is found, too */
   ethd_control_acknowledge(r.control);
   expect_found(&r, ETHD_TRANSITION, ETHD_E_FENCE);
   rig_close(&r);
@@ -96,7 +96,7 @@ static ethd_status forgets(const double *p, void *state, const ethd_tracking_in 
 }
 
 #if defined(__SSE__)
-/* 53 bits instead of 64, of which SSE knows nothing. */
+/* x87 precision of 53 bits instead of 64, which SSE doesn't have. */
 static ethd_status cuts(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) {
   unsigned short word;
   __asm__ volatile("fnstcw %0" : "=m"(word));

@@ -243,7 +243,7 @@ TEST(test_without_latch) {
   ck_assert(s.stopping == 0 && s.stopped == 0);
 }
 
-/* Programs print them: each has a name, a unit and a line that says what it is. */
+/* Programs print them: each has a name, a unit and a description of one line. */
 TEST(test_rows_say_what_they_are) {
   const char *const units[] = {"Nm", "Nm/s", "m/s", "m", "s", "rad", "J", NULL};
   for (int i = 0; i < ETHD_LIMITS; i++) {

@@ -56,7 +56,7 @@ static const char scene_text[] =
     "material soft k_e=500\nhalfplane -1 0 -0.238 material=soft\ncircle 0.2 0.2 0.01\n"
     "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\npolyline 0 0 1 1 2 0\nsegment 0 0 1 0\ncircle 9 9 1\n";
 
-static int well_said; /* a failure leaves nothing in its out and says what it is */
+static int well_said; /* a failure leaves its output empty and names its status */
 
 static ethd_status make_controller(void) {
   ethd_setup setup = ethd_setup_default();
@@ -263,7 +263,7 @@ START_TEST(test_a_tap) {
 }
 END_TEST
 
-/* The traps work: each of these must end in an abort. */
+/* The traps work: each call must abort. */
 START_TEST(test_traps) {
   static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
   void *volatile block = malloc(8);

@@ -13,7 +13,7 @@ static double seconds(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* For a text of so many rows, the least of several. */
+/* The shortest of several readings of a text with this number of rows, s. */
 static double time_of(const text_reader *r, int rows) {
   char *text;
   size_t length;

@@ -18,7 +18,7 @@ typedef struct odd_run {
   ethd_scene *scene, *body;
   ethd_trace trace;
   ethd_command command;
-  int pressed; /* ticks in which the finger has pressed a wall */
+  int pressed; /* ticks with the finger pressed against a wall */
 } odd_run;
 
 static void begin(odd_run *r, const char *scene, bool has_facts, double finger_to_x) {

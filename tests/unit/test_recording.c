@@ -252,7 +252,7 @@ TEST(test_the_end_counts) {
   free(text);
 }
 
-/* A recording may begin with hot motors, of which its rows know nothing. */
+/* A recording may begin with hot motors, which its rows don't tell. */
 TEST(test_heat) {
   program p = {.setup = config->setup};
   const double heat[2] = {0.93, 1.01};

@@ -128,7 +128,7 @@ TEST(test_paper_wall) {
   ethd_scene_destroy(s);
 }
 
-/* n = (3, 4) (1 + 5e-7) / 5, c likewise: the plane 3 x + 4 y = 5 * 0.2. */
+/* n = (3, 4) (1 + 5e-7) / 5 and c = 0.2 (1 + 5e-7): the plane 3 x + 4 y = 5 * 0.2. */
 TEST(test_halfplane_is_normalised) {
   double f = 1 + 5e-7;
   ethd_scene *s = SCENE_ONE(ETHD_SHAPE_HALFPLANE, 0.6 * f, 0.8 * f, 0.2 * f);

@@ -108,7 +108,7 @@ static int holds(const ethd_scene_box *b, double x, double y) {
   return fabs(u) <= b->half_u && fabs(v) <= b->half_v;
 }
 
-/* Of a chain of 1000 edges: 1000, 125, 16 and 2 boxes, of which each holds the ends of its edges. */
+/* The levels of a chain of 1000 edges have 1000, 125, 16 and 2 boxes, and each box holds the ends of its edges. */
 TEST(test_boxes) {
   enum { EDGES = 1000 };
   static double p[2 * EDGES];

@@ -24,7 +24,7 @@ class State(IntEnum):
 
 @dataclass(frozen=True)
 class Param:
-    """One number of a law: name, unit (or the words of a choice joined by '|'), range, default, what it is."""
+    """One number of a law: name, unit (or the words of a choice joined by '|'), range, default, description."""
 
     name: str
     unit: str

@@ -23,7 +23,7 @@ def _is_link(name: str, folder: int) -> bool:
 
 
 def _open(folder: str, *names: str) -> int:
-    """A descriptor of folder/names..., each of which is a single name. The folder itself may be reached through links."""
+    """A descriptor of folder/names..., where each name is a single component. The folder itself may be reached through links."""
     at = os.open(folder or ".", os.O_RDONLY | os.O_DIRECTORY)
     for i, name in enumerate(names):
         kind = os.O_NONBLOCK if i + 1 == len(names) else os.O_DIRECTORY

@@ -22,7 +22,7 @@ class Field(NamedTuple):
     name: str
     unit: str
     columns: Tuple[str, ...]  #: what a table calls its numbers
-    given_by: Tuple[int, ...] = (0,)  #: for each column, or for all: bits of `have`, any of which says that the device gave it; 0: it is always there
+    given_by: Tuple[int, ...] = (0,)  #: for each column, or for all: bits of `have` that mark it as given by the device, any of them suffices; 0: always given
 
 
 def _pair(name: str, unit: str) -> Tuple[str, ...]:

@@ -1,6 +1,6 @@
 /* Stand-in for a core of Xenomai: as hostile as the real one to whoever forgets to initialise it, and a thread
    that asks to be told of a switch to secondary mode is told of one. It has no name that the real one hasn't, see
-   cobalt.symbols. XENO_STANDIN_AHEAD: s by which the core's clock is ahead, as under the I-pipe of Xenomai 3.1. */
+   cobalt.symbols. XENO_STANDIN_AHEAD: s: lead of the core's clock, as under the I-pipe of Xenomai 3.1. */
 #include <errno.h>
 #include <pthread.h>
 #include <signal.h>

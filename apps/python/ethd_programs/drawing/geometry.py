@@ -70,7 +70,7 @@ def _curve(p: Points, tolerance: float) -> Points:
 
 
 def points_of(part: Part, tolerance: float) -> Points:
-    """Its vertices, none of which is its neighbour; of a closed part the first isn't repeated."""
+    """Its vertices without consecutive duplicates; a closed part doesn't repeat the first."""
     found, at = [part.start[None]], part.start
     for piece in part.pieces:
         found.append(piece if len(piece) == 1 else _curve(np.vstack([at[None], piece]), tolerance))

@@ -37,7 +37,7 @@ class Page:
         self.names = {"methods"}  #: of headings; that one comes last
 
     def put(self, markup: str, *values: Union[str, int, float]) -> None:
-        """Markup of our own, in which each %s stands for text, as %d, %g and the like stand for numbers."""
+        """Trusted markup: each %s takes text, which is escaped; %d, %g and so on take numbers."""
         self._parts.append(markup % tuple(escaped(v) if isinstance(v, str) else v for v in values) if values else markup)
 
     def add(self, other: "Page") -> None:
@@ -73,7 +73,7 @@ class Page:
         self._row("td", cells, self._numbers)
 
     def span(self, text: str, columns: int) -> None:
-        """One cell over so many columns, which says what the rows below it are about."""
+        """One cell over several columns, the heading of the rows below it."""
         self.put('<tr><td class="w" colspan="%d">%s</td></tr>\n', columns, text)
 
     def end_table(self) -> None:

@@ -37,7 +37,7 @@ class Report:
     absent: int  #: participants who aren't analysed
     events: Table
     survey: Table
-    beside: Optional[Taps]  #: of another folder, larger, by which the paper's sentences are then judged
+    beside: Optional[Taps]  #: of another, larger folder; the paper's sentences are then judged by it
     beside_name: str
     tap: Optional[str]  #: a recording whose traces are drawn; None: the typical one of each cell
     seed: int
@@ -80,7 +80,7 @@ class Report:
             return "The p values and intervals speak about people like these on this device."
         return next((words for leader, words in _CAVEATS.items() if self.only(leader)), _MIXED)
 
-    # ---- the sample by which the paper's sentences are judged ----
+    # ---- the sample for the paper's sentences ----
 
     @property
     def judged(self) -> Taps:

@@ -161,7 +161,7 @@ def equivalent(values: Numbers, low: float, high: float) -> Equivalence:
 
 @dataclass(frozen=True)
 class Published:
-    """A sample beside a published one, of which n, mean and sd are known."""
+    """A sample compared with a published one, whose n, mean and sd are known."""
 
     difference: float = NAN  #: of the means, less the published one
     interval: Interval = Interval()  #: 95 %
@@ -329,7 +329,7 @@ def median(c: Clusters, weight: Weights) -> Numbers:
 
 
 def cliff(c: Clusters, weight: Weights) -> Numbers:
-    """Cliff's delta (1993): the share of pairs in which side 1 is larger, minus the share in which it is smaller."""
+    """Cliff's delta (1993): the share of pairs with a larger value on side 1, minus the share with a smaller one."""
     starts = np.flatnonzero(np.concatenate(([True], np.diff(c.value) != 0)))
     a, b = (np.add.reduceat(np.where(c.side == side, weight, 0), starts, axis=1).astype(float) for side in (0, 1))
     below_a, below_b = np.cumsum(a, axis=1) - a, np.cumsum(b, axis=1) - b

@@ -82,7 +82,7 @@ class Table:
 
 
 class Folder:
-    """A study: one folder, or several stations' folders, of which the first one says what it asked for."""
+    """A study: one folder, or several stations' folders; the first one defines the protocol."""
 
     def __init__(self, folders: Sequence[str], plugins: bool, scratch: str):
         """scratch: a folder that isn't there yet, for what ethd-study says."""

@@ -110,7 +110,7 @@ class Taps:
     training: int = 0
     left_out: int = 0
     accepted: int = 0  #: by the experimenter, who looked at it
-    rejected: int = 0  #: likewise; it is in no cell
+    rejected: int = 0  #: valid taps that the experimenter rejected; they are in no cell
 
     @property
     def count(self) -> int:
