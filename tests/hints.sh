@@ -54,7 +54,7 @@ refused twice '"mine"' '{"k", "Ns/m", 0, 10, 5, "damping"}' 2 'law mine: params:
 refused brief '"mine"' '{"b", "Ns/m", 0, 10, 5, "a\nb"}' 2 'law mine: params: row 2, b: its brief is "a?b", one line'
 refused words '"mine"' '{"b", "one|two", 0, 5, 0, "damping"}' 2 'law mine: params: row 2, b: the words "one|two" with min 0, max 5'
 refused rows '"mine"' "$row" 17 'law mine: params: 17 rows, at most 16 are allowed'
-for pair in "wrong_abi:it was built for version 1 of the laws' interface, this is version 0: build it with these headers" \
+for pair in "wrong_abi:it was built for version 2 of the laws' interface, this is version 1: build it with these headers" \
   'no_step:law broken: it has no step' 'big_state:law broken: its state has [0-9]* bytes, at most 512' \
   'entry_id:ethd_plugin: its id is' 'brief_long:law broken: its brief is ".*\.\.\.", one line of 1 to 200' \
   'driver_canary:a driver, not a plugin with laws: \[device\] driver = file:NAME.so names it' \
