@@ -9,6 +9,7 @@ import pytest
 from ethd_programs import drawing
 from ethd_programs.cli import Refusal
 from ethd_programs.drawing import svg
+from ethd_programs.drawing.svg_source import Options  # noqa: E402
 from ethd_programs.drawing.geometry import arc_of, covered
 
 NAMESPACE = "xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink'"
@@ -17,7 +18,7 @@ OPEN = f"<svg {NAMESPACE} width='100mm' height='50mm' viewBox='0 0 100 50'>"
 
 def read(body: str, **options: object) -> svg.Result:
     text = body if body.startswith("<svg") or body.startswith("<?") else OPEN + body + "</svg>"
-    return svg.read("t.svg", text.encode(), svg.Options(**options))  # type: ignore[arg-type]
+    return svg.read("t.svg", text.encode(), Options(**options))  # type: ignore[arg-type]
 
 
 def things(body: str, **options: object) -> List[Tuple[str, List[float]]]:
@@ -191,7 +192,7 @@ def test_hostile_drawings_end_soon_and_read_nothing(tmp_path: Path) -> None:
         OPEN + "<g>" * 100000 + "</g>" * 100000 + "</svg>",
     ):
         with pytest.raises(Refusal):
-            svg.read("t.svg", text.encode(), svg.Options())
+            svg.read("t.svg", text.encode(), Options())
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -202,7 +203,7 @@ def test_broken_drawings_are_read_or_refused(seed: int) -> None:
         at = int(draw.integers(len(OPEN), len(text)))
         text[at : at + int(draw.integers(3))] = bytes(draw.choice([b"'", b"<", b"e9", b"-", b"0", b"z", b"A", b"/>", b"&lt;", b"1e308"]))
     try:
-        found = svg.read("t.svg", bytes(text), svg.Options(tolerance=1e-3))
+        found = svg.read("t.svg", bytes(text), Options(tolerance=1e-3))
     except Refusal as e:
         assert "\n" not in str(e)
     else:

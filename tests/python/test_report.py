@@ -11,6 +11,7 @@ np = pytest.importorskip("numpy")
 pytest.importorskip("scipy")
 
 from ethd_programs.cli import Refusal  # noqa: E402
+from ethd_programs.report import bootstrap  # noqa: E402
 from ethd_programs.report import statistics as st  # noqa: E402
 from ethd_programs.report.claims import threshold  # noqa: E402
 from ethd_programs.report.output import ReportFolder, cell_text, harmless  # noqa: E402
@@ -52,24 +53,24 @@ def test_holm_keeps_what_was_not_made():
 
 def test_bootstrap_draws_people_then_their_taps():
     value, person = np.array([1.0, 2, 3, 10, 20, 30]), np.array([0, 0, 0, 1, 2, 2])
-    clusters = st.Clusters(value, person, np.zeros(6, int))
+    clusters = bootstrap.Clusters(value, person, np.zeros(6, int))
     weight = clusters._weights(np.random.default_rng(1), 20000)
     # each person is drawn once on average, and in a draw as often as the taps say
     assert weight.mean(axis=0) == pytest.approx(np.ones(6), abs=0.03)
     assert set(np.unique(weight[:, 3])) == {0, 1, 2, 3} and np.all(weight[:, :3].sum(axis=1) % 3 == 0)
     three = weight[:, 3] == 3
     assert np.mean(three) == pytest.approx(1 / 27, abs=0.006) and np.all(weight[three][:, [0, 1, 2, 4, 5]] == 0)
-    assert math.isnan(clusters.interval(st.median, 1).low)  # too few people
-    assert clusters.here(st.median) == 6.5
+    assert math.isnan(clusters.interval(bootstrap.median, 1).low)  # too few people
+    assert clusters.here(bootstrap.median) == 6.5
 
 
 def test_figures_of_weighted_taps():
-    clusters = st.Clusters(np.array([1.0, 1, 2, 3]), np.array([0, 1, 0, 1]), np.array([0, 1, 1, 0]))
+    clusters = bootstrap.Clusters(np.array([1.0, 1, 2, 3]), np.array([0, 1, 0, 1]), np.array([0, 1, 1, 0]))
     weight = np.array([[1, 1, 1, 1], [2, 0, 3, 1], [1, 0, 0, 1]], np.int32)
-    assert st.median(clusters, weight).tolist() == [1.5, 2, 2]
-    found = st.cliff(clusters, weight)
+    assert bootstrap.median(clusters, weight).tolist() == [1.5, 2, 2]
+    found = bootstrap.cliff(clusters, weight)
     assert found[:2].tolist() == pytest.approx([(1 - 2) / 4, (2 * 3 - 3) / 9]) and math.isnan(found[2])
-    early = st.Clusters(np.array([0.3, 0.4, 0.5, 0.6]), np.zeros(4, int), np.array([0, 0, 1, 1]))
+    early = bootstrap.Clusters(np.array([0.3, 0.4, 0.5, 0.6]), np.zeros(4, int), np.array([0, 0, 1, 1]))
     found = threshold(early, np.array([[1, 1, 1, 1], [1, 0, 0, 1], [1, 1, 0, 0]], np.int32))
     assert found[:2].tolist() == pytest.approx([0.45, 0.45]) and math.isnan(found[2])
 
@@ -90,10 +91,10 @@ def simulate(people, runs, seed):
         own, moved = rng.normal(size=people), move + answer * rng.normal(size=people)
         taps = own[:, None] + rng.normal(size=(2, people, taps_each))
         taps[1] += moved[:, None]
-        both = st.Clusters(taps.ravel(), np.tile(person, 2), np.repeat([0, 1], people * taps_each))
+        both = bootstrap.Clusters(taps.ravel(), np.tile(person, 2), np.repeat([0, 1], people * taps_each))
         found = st.compare(np.median(taps[1], axis=1) - np.median(taps[0], axis=1), seed)
-        intervals = (st.Clusters(taps[0].ravel(), person, 0 * person).interval(st.median, seed + 1 + run, 2),
-                     both.interval(st.cliff, seed + 1 + run, 2), found.interval, found.effect)
+        intervals = (bootstrap.Clusters(taps[0].ravel(), person, 0 * person).interval(bootstrap.median, seed + 1 + run, 2),
+                     both.interval(bootstrap.cliff, seed + 1 + run, 2), found.interval, found.effect)
         hits += [i.low <= truth <= i.high for i, truth in zip(intervals, truths)]
     return hits / runs
 

@@ -61,7 +61,9 @@ def _main(arguments: Sequence[str]) -> int:
 
 def _convert(drawing: str, out: str, plot: Optional[str], options: "dict[str, object]") -> int:
     from ethd_programs.drawing import svg
+    from ethd_programs.drawing.librsvg import rsvg
     from ethd_programs.drawing.scene import picture
+    from ethd_programs.drawing.svg_source import Options
     from ethd_programs.files import Output, plain_file
 
     is_dxf = drawing.lower().endswith(".dxf")
@@ -78,11 +80,11 @@ def _convert(drawing: str, out: str, plot: Optional[str], options: "dict[str, ob
     if is_dxf:
         from ethd_programs.drawing import dxf
 
-        found = dxf.read(drawing, data, svg.Options(**options), _METRES)  # type: ignore[arg-type]
+        found = dxf.read(drawing, data, Options(**options), _METRES)  # type: ignore[arg-type]
     else:
-        found = svg.read(drawing, data, svg.Options(**options))  # type: ignore[arg-type]
+        found = svg.read(drawing, data, Options(**options))  # type: ignore[arg-type]
     if plot:
-        done = svg.rsvg(["-b", "white", "-w", "900", "-h", "900", "-a"], found.original)
+        done = rsvg(["-b", "white", "-w", "900", "-h", "900", "-a"], found.original)
         shown = picture(found.scene, done.stdout, found.frame)
     with Output(out) as file:
         file.write(found.scene.text().encode())

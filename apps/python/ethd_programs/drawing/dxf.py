@@ -8,7 +8,8 @@ import numpy as np
 from ethd_programs.cli import Refusal, plural
 from ethd_programs.drawing.geometry import covered
 from ethd_programs.drawing.scene import Scene
-from ethd_programs.drawing.svg import Options, Result
+from ethd_programs.drawing.svg import Result
+from ethd_programs.drawing.svg_source import Options
 
 _HEADER = {1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 2.54e-8, 9: 2.54e-5, 10: 0.9144, 13: 1e-6, 14: 0.1}
 _SOLID = ("HATCH", "MPOLYGON", "SOLID", "TRACE")

@@ -6,7 +6,8 @@ from typing import Callable, List, Sequence, Tuple
 
 import numpy as np
 
-from ethd_programs.report.statistics import (FEWEST_PEOPLE, NAN, Clusters, Interval, Numbers, Published, Weights, beside_published,
+from ethd_programs.report.bootstrap import Clusters, Weights
+from ethd_programs.report.statistics import (FEWEST_PEOPLE, NAN, Interval, Numbers, Published, beside_published,
                                              compare, equivalent, holm, overlapping, t_interval)
 from ethd_programs.report.taps import QUANTITIES, Cell, Quantity, Taps
 

@@ -4,12 +4,13 @@ from typing import Dict, List, Optional
 import numpy as np
 
 from ethd_programs.cli import plural
+from ethd_programs.report.bootstrap import Clusters, median
 from ethd_programs.report.output import Cell as Text
 from ethd_programs.report.output import harmless
 from ethd_programs.report.page import interval_text, mean_text, number_text
 from ethd_programs.report.pictures import Path
 from ethd_programs.report.report import Report
-from ethd_programs.report.statistics import FEWEST_PEOPLE, NAN, Clusters, median, summarise
+from ethd_programs.report.statistics import FEWEST_PEOPLE, NAN, summarise
 from ethd_programs.report.taps import QUANTITIES, REASONS, Cell, Quantity, Taps
 
 _DOTS = 300  # that are drawn for a cell; of more taps only each k-th is shown

@@ -5,10 +5,11 @@ from typing import Tuple
 import numpy as np
 
 from ethd_programs.cli import plural
+from ethd_programs.report.bootstrap import DRAWS, FEW_DRAWS
 from ethd_programs.report import claims as paper
 from ethd_programs.report.page import Page
 from ethd_programs.report.report import LEADERS, Report
-from ethd_programs.report.statistics import DRAWS, FEW_DRAWS, FEWEST_PEOPLE
+from ethd_programs.report.statistics import FEWEST_PEOPLE
 
 _STRATEGIES = {
     "abrupt": "tracking stops at once where the ring meets the wall",
