@@ -215,6 +215,75 @@ ETHD_API double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *sta
 ETHD_API int32_t ethd_guard_step(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *state,
                                  const ethd_guard_motion *motion, double torque[2]) ETHD_RT;
 
+/* ---- joints: what a driver of an arm sends stays within each joint's limits ----
+
+   A joint that is sent the speed v for each period T, and whose speed may fall by a T in one, needs from now on
+
+     D(v) = v T + (v - a T) T + (v - 2 a T) T + ...  = (k + 1) v T - k (k + 1) a T^2 / 2,   k a T <= v < (k + 1) a T
+
+   to stand: v^2 / (2 a) + v T / 2 or, between the multiples of a T, up to a T^2 / 8 more. At the distance d from its
+   bound it may be sent the v of D(v) = d: with k the whole part of (sqrt(1 + 8 d / (a T^2)) - 1) / 2,
+
+     v = (d / T + k (k + 1) a T / 2) / (k + 1)
+
+   Then v - a T is allowed in the next period, since D(v - a T) = D(v) - v T, and so on until it stands at the bound: a
+   joint that kept its limits can keep them. This holds for q and v *as sent*: v of the last period, q the place that
+   the speeds sent add up to, q += v T. A servo that follows late without overshoot, by a delay or a lag of first order,
+   moves by averages of what it was sent, so it stays within the same bounds.
+
+   A torque is a change of speed by torque T / inertia, in which the joint moves by the mean of its speeds before and
+   after. The place q + v T / 2 then moves as q does above, and the same bounds hold for it; q, v: measured. The fall a T
+   is then also no more than what the torque gives. `inertia` is the joint's own, as if nothing coupled it. */
+#define ETHD_JOINTS_MAX 7
+
+typedef enum ethd_joints_kind { ETHD_JOINTS_SPEED, ETHD_JOINTS_TORQUE } ethd_joints_kind;
+
+/* INFINITY, for `least` -INFINITY, is no limit. */
+typedef struct ethd_joint_limit {
+  double least, most;  /* rad */
+  double speed;        /* rad/s, >= 0 */
+  double acceleration; /* rad/s^2, >= 1e-6 */
+  double torque;       /* Nm, >= 0; only of torques */
+  double inertia;      /* kg m^2, >= 0; 0: not known, then a torque is bounded by `torque` alone */
+} ethd_joint_limit;
+
+typedef struct ethd_joint_limits {
+  uint32_t count; /* of joints, 1 to ETHD_JOINTS_MAX */
+  ethd_joints_kind kind;
+  double period; /* T, s: for which a command holds, 1e-5 to 1 */
+  ethd_joint_limit joint[ETHD_JOINTS_MAX];
+} ethd_joint_limits;
+
+/* What bound a command. */
+typedef enum ethd_joints_bound {
+  ETHD_JOINTS_FREE,
+  ETHD_JOINTS_POSITION,
+  ETHD_JOINTS_FAST,
+  ETHD_JOINTS_ACCELERATION,
+  ETHD_JOINTS_STRONG, /* its torque */
+  ETHD_JOINTS_FINITE  /* a number wasn't finite: 0 was asked of every joint instead */
+} ethd_joints_bound;
+
+typedef struct ethd_joints_ruling {
+  double share;            /* of the vector that was asked for, 0 to 1 */
+  int32_t joint;           /* from 0, the one that bound it; -1: none */
+  ethd_joints_bound bound; /* by what */
+  int32_t turned;          /* 1: the direction isn't the one asked for */
+} ethd_joints_ruling;
+
+/* Checks each number against what is said above: ETHD_E_RANGE, ETHD_E_NOT_FINITE with its name. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_joint_limits_check(const ethd_joint_limits *limits, ethd_error *error);
+
+/* Bounds a command, rad/s or Nm by limits->kind, in place and says what bound it. q, rad, and v, rad/s: as said above.
+   The vector is scaled as a whole, to the largest share that every joint allows. A joint that allows none, since it must
+   brake or turn round first, or that lies within a millionth of the largest number asked for, is bounded by itself
+   (`turned`). So an arm with a joint at its bound that is asked to go on stands still, and one that is asked to leave it
+   leaves. Beyond its limits, as after a hand moved it, a joint brakes by its acceleration and then only comes back;
+   where limits contradict each other the torque's come first, then the acceleration's. Limits that weren't checked, or
+   q or v that aren't finite: zero for every joint, ETHD_JOINTS_FINITE. [rt] */
+ETHD_API ethd_joints_ruling ethd_guard_joints(const ethd_joint_limits *limits, const double *q, const double *v,
+                                              double *command) ETHD_RT;
+
 ETHD_END_DECLS
 
 #endif

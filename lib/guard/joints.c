@@ -1,0 +1,160 @@
+/* Bounds of each joint; the derivation is in ethd/guard.h. */
+#include <math.h>
+#include <stdbool.h>
+
+#include "error.h"
+#include "ethd/guard.h"
+#include "fp_mode.h"
+
+#define INF ((double)INFINITY)
+#define SLOWEST 1e-6 /* rad/s^2 */
+#define ALONE 1e-6   /* share of the largest number asked for, by which a joint may be too much without scaling all */
+
+typedef struct window {
+  double lo, hi;
+  ethd_joints_bound below, above; /* what the ends are of */
+} window;
+
+/* Returns the most speed towards a bound that is d away. */
+static double approach(double d, double a, double T) {
+  if (!(d > 0)) return 0;
+  if (!(d < INF)) return INF;
+  if (!(a < INF)) return d / T;
+  const double step = a * T, root = sqrt(1 + 8 * d / (step * T)), k = floor((root - 1) / 2);
+  return (d / T + k * (k + 1) * step / 2) / (k + 1);
+}
+
+static void narrow(window *w, double lo, double hi, ethd_joints_bound bound) {
+  if (hi < w->hi) w->hi = hi, w->above = bound;
+  if (lo > w->lo) w->lo = lo, w->below = bound;
+}
+
+/* Moves both ends to within [lo, hi], which comes before what they were. */
+static void force(window *w, double lo, double hi, ethd_joints_bound bound) {
+  if (w->hi > hi) w->hi = hi, w->above = bound;
+  if (w->lo < lo) w->lo = lo, w->below = bound;
+  if (w->hi < lo) w->hi = lo, w->above = bound;
+  if (w->lo > hi) w->lo = hi, w->below = bound;
+}
+
+/* Returns which speeds a joint may have after this period. */
+static window speeds(const ethd_joint_limit *j, double a, double T, double q, double v) {
+  window w = {-INF, INF, ETHD_JOINTS_FREE, ETHD_JOINTS_FREE};
+  narrow(&w, -approach(q - j->least, a, T), approach(j->most - q, a, T), ETHD_JOINTS_POSITION);
+  narrow(&w, -j->speed, j->speed, ETHD_JOINTS_FAST);
+  if (a < INF) force(&w, v - a * T, v + a * T, ETHD_JOINTS_ACCELERATION);
+  return w;
+}
+
+static window torques(const ethd_joint_limit *j, double T, double q, double v) {
+  window w = {-INF, INF, ETHD_JOINTS_FREE, ETHD_JOINTS_FREE};
+  if (j->inertia > 0) {
+    const double a = fmax(fmin(j->acceleration, j->torque / j->inertia), SLOWEST);
+    w = speeds(j, a, T, q + v * T / 2, v);
+    w.lo = (w.lo - v) * j->inertia / T;
+    w.hi = (w.hi - v) * j->inertia / T;
+  }
+  force(&w, -j->torque, j->torque, ETHD_JOINTS_STRONG);
+  return w;
+}
+
+/* Returns the largest share of `asked` within the window, which is 1 where the window doesn't hold the direction at all
+   or leaves out next to nothing. */
+static double share_of(const window *w, double asked, double most) {
+  if (asked <= w->hi && asked >= w->lo) return 1;
+  const double end = asked > w->hi ? w->hi : w->lo;
+  if (fabs(asked - end) <= ALONE * most) return 1;
+  const double share = end / asked;
+  return share >= 0 && share <= 1 ? share : 1;
+}
+
+static bool are_finite(const ethd_joint_limits *limits, const double *numbers) {
+  double sum = 0;
+  for (uint32_t i = 0; i < limits->count; i++) sum += numbers[i] - numbers[i]; /* NaN for one that isn't */
+  return sum == 0;
+}
+
+static bool is_sound(const ethd_joint_limits *limits) {
+  bool sound = limits->count >= 1 && limits->count <= ETHD_JOINTS_MAX && limits->period >= 1e-5 && limits->period <= 1;
+  for (uint32_t i = 0; sound && i < limits->count; i++) {
+    const ethd_joint_limit *j = &limits->joint[i];
+    sound = j->least <= j->most && j->speed >= 0 && j->acceleration >= SLOWEST && j->torque >= 0 && j->inertia >= 0;
+  }
+  return sound;
+}
+
+static double clamp(const window *w, double value, ethd_joints_bound *bound) {
+  *bound = value > w->hi ? w->above : value < w->lo ? w->below : ETHD_JOINTS_FREE;
+  return value > w->hi ? w->hi : value < w->lo ? w->lo : value;
+}
+
+ETHD__FP_APART static ethd_joints_ruling bound_all(const ethd_joint_limits *limits, const double *q, const double *v,
+                                                   double *command) {
+  ethd_joints_ruling r = {.share = 1, .joint = -1};
+  window w[ETHD_JOINTS_MAX];
+  double most = 0;
+  ethd_joints_bound bound;
+  const bool known = is_sound(limits) && are_finite(limits, q) && are_finite(limits, v);
+  if (!known || !are_finite(limits, command)) {
+    r.bound = ETHD_JOINTS_FINITE;
+    for (uint32_t i = 0; i < limits->count && i < ETHD_JOINTS_MAX; i++) command[i] = 0;
+    if (!known) return r;
+  }
+  for (uint32_t i = 0; i < limits->count; i++) {
+    const ethd_joint_limit *j = &limits->joint[i];
+    w[i] = limits->kind == ETHD_JOINTS_TORQUE ? torques(j, limits->period, q[i], v[i])
+                                              : speeds(j, j->acceleration, limits->period, q[i], v[i]);
+    most = fmax(most, fabs(command[i]));
+  }
+  for (uint32_t i = 0; i < limits->count; i++) {
+    const double share = share_of(&w[i], command[i], most);
+    if (share >= r.share) continue;
+    r.share = share;
+    r.joint = (int32_t)i;
+    (void)clamp(&w[i], command[i], &bound);
+    if (r.bound != ETHD_JOINTS_FINITE) r.bound = bound;
+  }
+  for (uint32_t i = 0; i < limits->count; i++) {
+    const double scaled = r.share * command[i];
+    command[i] = clamp(&w[i], scaled, &bound);
+    if (fabs(command[i] - scaled) > ALONE * most) r.turned = 1;
+    if (r.joint >= 0 || bound == ETHD_JOINTS_FREE) continue;
+    r.joint = (int32_t)i;
+    if (r.bound != ETHD_JOINTS_FINITE) r.bound = bound;
+  }
+  return r;
+}
+
+ethd_joints_ruling ethd_guard_joints(const ethd_joint_limits *limits, const double *q, const double *v,
+                                     double *command) {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_joints_ruling ruling = bound_all(limits, q, v, command);
+  ethd__fp_give(callers);
+  return ruling;
+}
+
+ETHD__FP_APART static ethd_status check_all(const ethd_joint_limits *limits, ethd_error *error) {
+  ethd_status status = ethd__check_number(error, "count", limits->count, 1, ETHD_JOINTS_MAX);
+  if (!status) status = ethd__check_number(error, "kind", limits->kind, ETHD_JOINTS_SPEED, ETHD_JOINTS_TORQUE);
+  if (!status) status = ethd__check_number(error, "period", limits->period, 1e-5, 1);
+  for (uint32_t i = 0; !status && i < limits->count; i++) {
+    const ethd_joint_limit *j = &limits->joint[i];
+    status = ethd__check_number(error, "most", j->most, -INF, INF);
+    if (!status) status = ethd__check_number(error, "least", j->least, -INF, j->most);
+    if (!status) status = ethd__check_number(error, "speed", j->speed, 0, INF);
+    if (!status) status = ethd__check_number(error, "acceleration", j->acceleration, SLOWEST, INF);
+    if (!status) status = ethd__check_number(error, "torque", j->torque, 0, INF);
+    if (!status) status = ethd__check_number(error, "inertia", j->inertia, 0, INF);
+    static const char *const names[ETHD_JOINTS_MAX] = {"joint1", "joint2", "joint3", "joint4",
+                                                       "joint5", "joint6", "joint7"};
+    if (status) ethd__error_prefix(error, names[i]);
+  }
+  return status;
+}
+
+ethd_status ethd_joint_limits_check(const ethd_joint_limits *limits, ethd_error *error) {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = check_all(limits, error);
+  ethd__fp_give(callers);
+  return status;
+}
