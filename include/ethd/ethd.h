@@ -12,6 +12,7 @@
 
 #include "ethd/arm.h"
 #include "ethd/base.h"
+#include "ethd/cap.h"
 #include "ethd/cell.h"
 #include "ethd/control.h"
 #include "ethd/estimate.h"

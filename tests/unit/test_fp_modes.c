@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "denormals.h"
+#include "ethd/cap.h"
 #include "ethd/config.h"
 #include "ethd/estimate.h"
 #include "ethd/maths.h"
@@ -436,6 +437,22 @@ TEST(test_odd_readings) {
       IN(&usual_traps, ethd_filter_start3(&filter, &state, (ethd_vec3){a, b, a}, (ethd_vec3){b, a, b});
          ethd_filter_predict(&filter, &state, 0.001); (void)ethd_filter_update3(&filter, &state, &reading);
          ethd_filter_output3(&filter, &state, &x3, &v3));
+    }
+    ethd_cap cap = {.count = 4, .finger_radius = 8e-3, .reach = 14e-3, .gate = 1e-3, .out = {0, 0, -1}};
+    const ethd_vec3 from[4] = {{0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}, {-0.01, 0, 0}};
+    for (int k = 0; k < 4; k++) cap.rays[k] = (ethd_cap_ray){from[k], ethd_vec3_scale(-100, from[k])};
+    for (int sought = 0; sought < 2; sought++) {
+      double distances[4];
+      ethd_cap_finger finger;
+      ethd_vec3 sd;
+      cap.seeks_radius = sought;
+      IN(&usual_traps, status = ethd_cap_check(&cap, &error));
+      ck_assert_int_eq(status, ETHD_OK);
+      IN(&usual_traps, ethd_cap_rays(&cap, (ethd_vec3){a, b, a}, a, distances);
+         status = ethd_cap_bound(&cap, (ethd_vec3){b, a, 0}, a, &sd));
+      for (int k = 0; k < 4; k++) distances[k] = k % 2 ? a : b;
+      IN(&usual_traps, status = ethd_cap_step(&cap, distances, &finger));
+      if (isnan(a) || isnan(b)) ck_assert_int_eq(status, ETHD_STATUS_STALE);
     }
     for (int i = 0; i < ETHD_VELOCITY_COUNT; i++) {
       ethd_velocity velocity;
