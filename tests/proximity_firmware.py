@@ -7,7 +7,6 @@ import random
 import struct
 import subprocess
 import sys
-import termios
 import threading
 import time
 
@@ -53,21 +52,16 @@ class Ring:
     def __init__(self, *options):
         self.process = subprocess.Popen([sys.argv[1], "--step", *options, sys.argv[2]], text=True, bufsize=1,
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        self.expected = 0  # bytes, beside those that were sent
-        self.open(self.process.stdout.readline())
-
-    def open(self, line):
-        self.port = os.open(line.split()[1], os.O_RDONLY | os.O_NOCTTY)
+        self.port = os.open(self.process.stdout.readline().split()[1], os.O_RDONLY | os.O_NOCTTY)
         self.bytes = bytearray()
-        self.sent_before = self.stats["sent_bytes"][0] if hasattr(self, "stats") else 0
+        self.sent_before = 0
         threading.Thread(target=self.drain, daemon=True).start()
 
     def drain(self):
-        port, into = self.port, self.bytes
         try:
-            while more := os.read(port, 4096):
-                into += more
-        except OSError:  # unplugged
+            while more := os.read(self.port, 4096):
+                self.bytes += more
+        except OSError:  # the ring has ended
             pass
 
     def tell(self, line):
@@ -90,7 +84,7 @@ class Ring:
         """The frames of that time, and how many chunks between delimiters were none."""
         self.tell(f"run {seconds}")
         self.measure()
-        want = self.stats["sent_bytes"][0] - self.sent_before + self.expected
+        want = self.stats["sent_bytes"][0] - self.sent_before
         patience = time.monotonic() + 60
         while len(self.bytes) < want and time.monotonic() < patience:
             time.sleep(0.001)
@@ -313,65 +307,6 @@ def test_leader_hang(ring):
     assert_good(frames[-3:])
 
 
-def test_wire(ring):
-    """What the wire breaks is seen: every frame that is left is right."""
-    for command, change in (("corrupt 5", 0), ("lose 7", -7), ("insert 3", 3), ("lose 44", -44)):
-        before = ring.run(0.02)[0]
-        ring.tell(command)
-        ring.expected += change
-        frames, bad = ring.run(0.05)
-        assert bad <= 2 and len(frames) >= 12, (command, bad, frames)
-        for frame in frames:
-            assert frame.flags == 0 and frame.counts == COUNTS, (command, frame)
-        holes = sum((b.seq - a.seq) % 65536 - 1 for a, b in zip(before[-1:] + frames, frames))
-        assert 1 <= holes <= 2, (command, holes)
-
-
-def test_replug(ring):
-    for _ in range(3):
-        ring.tell("unplug")
-        ring.tell("run 0.02")
-        os.close(ring.port)
-        port = ring.tell("plug")
-        ring.measure()
-        ring.expected = 0
-        ring.open(port[0])
-        frames, bad = ring.run(0.05)
-        assert bad <= 1 and len(frames) >= 13, (bad, len(frames))
-        assert_good(frames)
-        assert_follow(frames)
-
-
-def test_speed_of_port():
-    """With --baud-matters a host that hasn't set the UART's speed reads rubbish."""
-    ring = Ring("--baud-matters")
-    ring.set(COUNTS)
-    frames, bad = ring.run(0.05)
-    assert not frames, frames
-    mode = termios.tcgetattr(ring.port)
-    mode[4] = mode[5] = termios.B500000
-    termios.tcsetattr(ring.port, termios.TCSANOW, mode)
-    frames, bad = ring.run(0.05)
-    assert len(frames) >= 13 and bad <= 1, (len(frames), bad)
-    ring.end()
-
-
-def test_paced():
-    """Without --step time passes by itself, and the newest counts count."""
-    process = subprocess.Popen([sys.argv[1], sys.argv[2]], text=True, bufsize=1, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-    port = os.open(process.stdout.readline().split()[1], os.O_RDONLY | os.O_NOCTTY)
-    process.stdin.write(" ".join(map(str, COUNTS)) + "\n")
-    data = bytearray()
-    while True:
-        data += os.read(port, 4096)
-        raw = [uncobs(bytes(chunk)) for chunk in data.split(b"\0")[1:-1]]
-        frames = [Frame(r) for r in raw if r and len(r) == 42]
-        if len(frames) > 10 and frames[-1].counts == COUNTS:
-            break
-    process.stdin.write("quit\n")
-    assert process.wait(60) == 0
-
-
 def main():
     test_start()
     test_rate(baud=500000, seconds=7)
@@ -395,11 +330,7 @@ def main():
     test_board_hang(ring)
     test_leader_reset(ring)
     test_leader_hang(ring)
-    test_wire(ring)
-    test_replug(ring)
     ring.end()
-    test_speed_of_port()
-    test_paced()
 
 
 main()

@@ -18,7 +18,7 @@ const char commands_help[] =
     "  link-short, link-free   SDA between the boards lies at ground\n"
     "  link-corrupt N          the next N bytes between the boards go over wrongly\n"
     "  reset B, hang B         board B's reset; its program hangs\n"
-    "  corrupt N, lose N, insert N   the next N bytes on the wire to the host\n"
+    "  corrupt N, lose N             the next N bytes on the wire to the host\n"
     "  unplug, plug            the pseudo-terminal goes; a new one comes (its name is printed)\n"
     "  stats                   what was measured since the last time\n"
     "  quit\n";
@@ -93,7 +93,6 @@ static void reset(session *s, int b) { ring_reset(s->ring, b); }
 static void hang(session *s, int b) { ring_hang(s->ring, b); }
 static void corrupt(session *s, int n) { s->terminal.corrupt = n; }
 static void lose(session *s, int n) { s->terminal.lose = n; }
-static void insert(session *s, int n) { s->terminal.insert = n; }
 static void link_short(session *s, int n) { s->ring->link.shorted = n == 0; }
 static void link_free(session *s, int n) { s->ring->link.shorted = n != 0; }
 static void show_stats(session *s, int n) { (void)n, stats(s); }
@@ -126,7 +125,6 @@ static const struct {
     {"hang", RING_BOARDS, hang},
     {"corrupt", 1000000000, corrupt},
     {"lose", 1000000000, lose},
-    {"insert", 1000000000, insert},
     {"link-short", 0, link_short},
     {"link-free", 0, link_free},
     {"unplug", 0, unplug},

@@ -61,10 +61,6 @@ static void put(terminal *t, uint8_t byte) {
 void terminal_byte(void *context, uint8_t byte) {
   terminal *t = context;
   t->sent++;
-  if (t->insert) {
-    t->insert--;
-    put(t, random_byte(t));
-  }
   if (t->lose) {
     t->lose--;
     return;

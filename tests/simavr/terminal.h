@@ -14,7 +14,7 @@ typedef struct terminal {
   double baud;
   uint8_t buffer[4096];
   int filled;
-  int corrupt, lose, insert; /* bytes still to be treated so */
+  int corrupt, lose; /* how many more bytes to corrupt, to lose */
   uint32_t random;
   uint64_t sent, lost;
 } terminal;

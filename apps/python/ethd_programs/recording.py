@@ -1,8 +1,7 @@
 """Recordings, the folders that the programs write (include/ethd/record.h), read in pieces."""
 import datetime
 import os
-from types import TracebackType
-from typing import Any, Iterator, List, NamedTuple, Optional, Tuple, Type
+from typing import Any, Iterator, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray

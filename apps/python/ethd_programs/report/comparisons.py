@@ -13,7 +13,7 @@ from ethd_programs.report.output import Cell as Text
 from ethd_programs.report.output import harmless
 from ethd_programs.report.page import interval_text, mean_text, number_text, p_text
 from ethd_programs.report.report import Report
-from ethd_programs.report.statistics import (FEWEST_PEOPLE, NAN, Equivalence, Interval, Numbers, Paired, Summary, compare,
+from ethd_programs.report.statistics import (FEWEST_PEOPLE, NAN, Equivalence, Interval, Paired, Summary, compare,
                                              equivalent, holm, summarise)
 from ethd_programs.report.taps import QUANTITIES, Cell, Quantity, Taps
 

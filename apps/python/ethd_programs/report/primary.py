@@ -2,7 +2,7 @@
 from typing import List, Optional, Tuple
 
 from ethd_programs.cli import plural
-from ethd_programs.report.comparisons import Within, corrected, print_tests, test_row, within
+from ethd_programs.report.comparisons import corrected, print_tests, test_row, within
 from ethd_programs.report.report import Report
 from ethd_programs.report.statistics import people_needed
 from ethd_programs.report.taps import QUANTITIES, Cell, Quantity, Taps

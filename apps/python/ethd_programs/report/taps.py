@@ -1,5 +1,4 @@
 """The taps of a table, by cell: a strategy at a speed."""
-import math
 import re
 from array import array
 from dataclasses import dataclass, field
