@@ -349,11 +349,11 @@ bench bench-quick: $(B)/tests/bench $(PEERS) $(SHARE)
 STRESS := $(patsubst %.c,$(B)/tests/%,$(notdir $(call files,tests/stress/test_*.c)))
 stress: export CK_DEFAULT_TIMEOUT := 360000
 stress: all $(B)/tests/test_scene_tree \
-  $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_store $(B)/tests/test_servo_driver \
+  $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_store $(B)/tests/test_servo_faults \
   $(B)/tests/test_promises $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
   $(B)/tests/volume $(B)/tests/day $(STRESS)
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
-	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
+	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_faults
 	ETHD_PROMISES=1e8 $(B)/tests/test_promises
 	BUILD='$(abspath $(B))' PYTHON="$$(sh .ci/setup python)" PLANTS=20 sh tests/identify.sh
 	for k in 1 2 3 4 5; do ETHD_STRESS=1 $(B)/tests/test_servo_guardian || exit 1; done

@@ -7,16 +7,13 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "servo/device.h"
+#include "servo/driven.h"
 #include "servo/homing.h"
-#include "servo/mock.h"
 #include "text/text.h"
-#include "unit/rig.h"
 
 #define INERTIA 0.01
 #define FRICTION 0.06
 #define STEP 1e-4
-#define COUNT (2 * 3.14159265358979323846 / (4000 * 9.8))
 
 typedef struct joint {
   double q, w;
@@ -107,32 +104,16 @@ TEST(test_not_found) {
 
 /* ---- a servo whose counts begin anew with its power ---- */
 
-static const ethd_driver *const servo = &ethd_driver_servo;
-static ethd_setup setup;
-static mock drive;
-static char message[ETHD_MESSAGE_MAX], folder[] = "/tmp/ethd-home-XXXXXX";
-static void *device;
-static int64_t virtual_ns;
-
 static ethd_status open_servo(const ethd_setting *more, uint32_t count) {
   ethd_setting settings[8] = {{"map", "plant.map", 1}, {"port", drive.port, 2}};
   if (count) memcpy(settings + 2, more, count * sizeof *more);
-  setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, 2 + count, folder, "d.ini", 1};
-  ethd_status status = servo->open(&def, &device, message);
-  if (status && device) servo->close(device), device = NULL;
-  virtual_ns = 0;
-  return status;
+  now = 0;
+  return open_with(settings, 2 + count);
 }
 
-static ethd_sense tick(void) {
-  ethd_sense s;
-  const ethd_command command = {{0, 0}, 0, 0};
-  memset(&s, 0, sizeof s);
-  (void)!servo->service(device, 0, virtual_ns += 1000000);
-  (void)!servo->read(device, virtual_ns, &s);
-  (void)!servo->write(device, virtual_ns, &command);
-  return s;
+static ethd_sense sensed(void) {
+  (void)tick(0, 0);
+  return sense;
 }
 
 static void count(int at, int64_t n) {
@@ -161,26 +142,26 @@ TEST(test_reference) {
   ck_assert_msg(strstr(servo->why(device), "device.home is jig"), "%s", servo->why(device));
   ck_assert_int_eq(servo->home(device, jig), ETHD_OK);
   ck_assert_int_eq(servo->start(device), ETHD_OK);
-  ethd_sense s = tick();
+  ethd_sense s = sensed();
   ck_assert(fabs(s.q[0] - 0.7) < 1e-12 && fabs(s.q[1] + 0.3) < 1e-12);
   count(MOCK_POSITION1, 520);
-  s = tick();
+  s = sensed();
   ck_assert_double_eq_tol(s.q[0], 0.7 + 20 * COUNT, 1e-12);
   /* unplugged: who knows what happened meanwhile */
   mock_unplug(&drive);
-  for (int i = 0; i < 20; i++) tick();
+  for (int i = 0; i < 20; i++) sensed();
   mock_plug(&drive);
   for (int i = 0; i < 5000 && ((ethd__servo_device *)device)->link.state < ETHD__SERVO_IDENTIFIED; i++)
-    tick(), usleep(100);
+    sensed(), usleep(100);
   refused_for(1);
   ck_assert_int_eq(servo->home(device, jig), ETHD_OK);
   ck_assert_int_eq(servo->start(device), ETHD_OK);
   /* its counter begins anew on a line that stays: 46 cm at the paper's ring, and no pose to trust */
-  tick(); /* the start was by another clock, after which no step is a jump */
+  sensed(); /* the start was by another clock, after which no step is a jump */
   count(MOCK_POSITION1, 72000);
-  for (int i = 0; i < 3000; i++) s = tick();
+  for (int i = 0; i < 3000; i++) s = sensed();
   servo->safe(device);
-  for (int i = 0; i < 10; i++) tick();
+  for (int i = 0; i < 10; i++) sensed();
   refused_for(1);
   servo->close(device);
   mock_stop(&drive);
@@ -252,7 +233,7 @@ TEST(test_index) {
   ck_assert(!(drive.words[MOCK_STATUS] & 2)); /* it is off again */
   drive.act = (mock_plan)0;
   ck_assert_int_eq(servo->start(device), ETHD_OK);
-  const ethd_sense s = tick();
+  const ethd_sense s = sensed();
   for (int i = 0; i < 2; i++) {
     const _Atomic uint16_t *w = drive.words + (i ? MOCK_POSITION2 : MOCK_POSITION1);
     double past = (double)((int32_t)((uint32_t)w[0] << 16 | w[1]) - MARK) * COUNT;
@@ -265,30 +246,15 @@ TEST(test_index) {
   free(text);
 }
 
-static void write_map(const char *path) {
-  char *text;
-  size_t length;
-  ck_assert_int_eq(ethd_text_read("apps/config/plant.map", 1 << 16, &text, &length, message), ETHD_OK);
-  memcpy(strstr(text, "response = 0.003 "), "response = 0.25  ", 17);
-  memcpy(strstr(text, "drain = 0.0008 "), "drain = 0.0200 ", 15);
+/* A map whose positions aren't absolute. */
+static void set_up(void) {
+  char path[64];
+  driven_set_up();
+  char *text = map_text();
   for (char *at; (at = strstr(text, "absolute = yes"));) memcpy(at, "absolute = no ", 14);
-  ck_assert_int_eq(ethd_text_write(path, text, length, message), ETHD_OK);
+  snprintf(path, sizeof path, "%s/plant.map", folder);
+  ck_assert_int_eq(ethd_text_write(path, text, strlen(text), message), ETHD_OK);
   free(text);
 }
 
-/* The map of each test, in a folder of its own. */
-static void set_up(void) {
-  char path[64];
-  ck_assert_ptr_nonnull(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/plant.map", folder);
-  write_map(path);
-}
-
-static void tear_down(void) {
-  char path[64];
-  snprintf(path, sizeof path, "%s/plant.map", folder);
-  unlink(path);
-  ck_assert_int_eq(rmdir(folder), 0);
-}
-
-FIXTURE(set_up, tear_down)
+FIXTURE(set_up, driven_tear_down)
