@@ -32,10 +32,12 @@
 
 ETHD_BEGIN_DECLS
 
-/* The interface's version, 2, and the bytes of what a driver fills or returns, so that no struct grows unnoticed; never
-   0, which is a table whose abi wasn't set. */
-#define ETHD_DRIVER_ABI \
-  ((uint32_t)(20000 + sizeof(ethd_sense) + sizeof(ethd_command) + sizeof(ethd_limits) + sizeof(ethd_dynamics)))
+/* The interface's version, 3, in 4 bits, and in eights of bytes the size of each struct that a driver fills or gets, so
+   that none grows unnoticed and a refusal names it: ethd_sense in 10 bits, then 6 each. Never 0, which is a table whose
+   abi wasn't set. */
+#define ETHD_DRIVER_ABI                                                                  \
+  ((uint32_t)(3u << 28 | sizeof(ethd_sense) / 8 << 18 | sizeof(ethd_command) / 8 << 12 | \
+              sizeof(ethd_limits) / 8 << 6 | sizeof(ethd_dynamics) / 8))
 #define ETHD_DRIVERS_MAX 4         /* behind one device */
 #define ETHD_DRIVERS_TEXT_MAX 1024 /* bytes of their ids and files in a row, the closing 0 included */
 #define ETHD_DRIVER_FILE "file:"   /* before a path, among drivers' ids */

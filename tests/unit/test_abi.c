@@ -1,4 +1,4 @@
-/* What a plugin or a driver was compiled against may not move: offsets and sizes of ABI 1, and of the drivers' ABI 2, on
+/* What a plugin or a driver was compiled against may not move: offsets and sizes of ABI 1, and of the drivers' ABI 3, on
    a 64-bit machine, and the tables of every law that the library brings. */
 #include <float.h>
 #include <stddef.h>
@@ -226,7 +226,7 @@ SIZE(ethd_error, 96, 8);
 #endif
 
 _Static_assert(ETHD_ABI == 1 && ETHD_STATE_MAX == 512 && ETHD_PARAMS_MAX == 16, "ABI 1");
-_Static_assert(ETHD_DRIVER_ABI / 10000 == 2 && ETHD_MESSAGE_MAX == 512, "the drivers' ABI 2");
+_Static_assert(ETHD_DRIVER_ABI >> 28 == 3 && ETHD_MESSAGE_MAX == 512, "the drivers' ABI 3");
 _Static_assert(ETHD_HAVE_DQ == 1 && ETHD_HAVE_FINGER == 2 && ETHD_HAVE_START == 4 && ETHD_HAVE_CENTRE == 8 &&
                    ETHD_HAVE_RAYS == 16 && ETHD_HAVE_RING == 32 && ETHD_HAVE_BODY == 64 && ETHD_HAVE_WORLD == 1024,
                "what a sense has");

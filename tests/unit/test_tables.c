@@ -99,14 +99,18 @@ TEST(test_drivers) {
   REFUSED(ETHD_OK, "", d.keys = words);
   REFUSED(ETHD_OK, "", d.units = NULL, d.service = NULL);
   REFUSED(ETHD_OK, "", d.write = NULL, d.safe = NULL);
-  char said[ETHD_MESSAGE_MAX];
-  snprintf(said, sizeof said, "its table doesn't say its abi: .abi = ETHD_DRIVER_ABI is needed, which is %u",
-           ETHD_DRIVER_ABI);
-  REFUSED(ETHD_E_ABI, said, d.abi = 0);
-  snprintf(said, sizeof said,
-           "it was built for version 9 of the drivers' interface, this is version %u: build it with these headers",
-           ETHD_DRIVER_ABI);
-  REFUSED(ETHD_E_ABI, said, d.abi = 9);
+#define BUILT_FOR(version) \
+  "it was built for version " version " of the drivers' interface, this is version 3: build it with these headers"
+  REFUSED(ETHD_E_ABI, "its table doesn't say its abi: .abi = ETHD_DRIVER_ABI is needed", d.abi = 0);
+  REFUSED(ETHD_E_ABI, BUILT_FOR("9"), d.abi = 9);
+  REFUSED(ETHD_E_ABI, BUILT_FOR("2"), d.abi = 20736);
+  REFUSED(ETHD_E_ABI, BUILT_FOR("4"), d.abi += 1u << 28);
+#define BUILT_WITH(name, there, here) \
+  "it was built with an " name " of " there " bytes, here it has " here ": build it with these headers"
+  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_sense", "472", "480"), d.abi -= 1u << 18);
+  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_command", "32", "24"), d.abi += 1u << 12);
+  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_limits", "200", "192"), d.abi += 1u << 6);
+  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_dynamics", "48", "40"), d.abi += 1u);
   REFUSED(ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _", d.id = NULL);
   REFUSED(ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _", d.id = "");
   REFUSED(ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _", d.id = "Sound");

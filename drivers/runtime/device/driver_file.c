@@ -33,16 +33,45 @@ static const char *functions_fault(const ethd_driver *d) {
   return NULL;
 }
 
-/* The ABI comes first: when it differs, nothing behind it can be trusted. */
-static ethd_status check_head(const ethd_driver *d, char *what) {
-  if (!d->abi)
-    return ethd__say(what, ETHD_E_ABI, "its table doesn't say its abi: .abi = ETHD_DRIVER_ABI is needed, which is %u",
-                     ETHD_DRIVER_ABI);
-  if (d->abi != ETHD_DRIVER_ABI)
+#define VERSION_AT 28
+
+/* Where ETHD_DRIVER_ABI has the size of a struct. */
+static const struct {
+  const char *name;
+  uint32_t at, mask, size;
+} sizes[] = {{"ethd_sense", 18, 1023, sizeof(ethd_sense)},
+             {"ethd_command", 12, 63, sizeof(ethd_command)},
+             {"ethd_limits", 6, 63, sizeof(ethd_limits)},
+             {"ethd_dynamics", 0, 63, sizeof(ethd_dynamics)}};
+
+_Static_assert(sizeof(ethd_sense) <= 8 * 1023 && sizeof(ethd_sense) % 8 == 0, "10 bits of the ABI");
+_Static_assert(sizeof(ethd_command) <= 8 * 63 && sizeof(ethd_command) % 8 == 0, "6 bits of the ABI");
+_Static_assert(sizeof(ethd_limits) <= 8 * 63 && sizeof(ethd_limits) % 8 == 0, "6 bits of the ABI");
+_Static_assert(sizeof(ethd_dynamics) <= 8 * 63 && sizeof(ethd_dynamics) % 8 == 0, "6 bits of the ABI");
+
+/* Versions 1 and 2 had no bits of their own: 2 was 20000 and the sum of the sizes. */
+static uint32_t version_of(uint32_t abi) {
+  if (abi >> VERSION_AT) return abi >> VERSION_AT;
+  return abi < 10000 ? abi : abi / 10000;
+}
+
+static ethd_status refuse_abi(uint32_t abi, char *what) {
+  const uint32_t version = version_of(abi), own = version_of(ETHD_DRIVER_ABI);
+  if (version != own)
     return ethd__say(
         what, ETHD_E_ABI,
         "it was built for version %u of the drivers' interface, this is version %u: build it with these headers",
-        d->abi, ETHD_DRIVER_ABI);
+        version, own);
+  uint32_t i = 0;
+  while ((abi >> sizes[i].at & sizes[i].mask) == sizes[i].size / 8) i++; /* one of them differs */
+  return ethd__say(what, ETHD_E_ABI, "it was built with an %s of %u bytes, here it has %u: build it with these headers",
+                   sizes[i].name, 8 * (abi >> sizes[i].at & sizes[i].mask), sizes[i].size);
+}
+
+/* The ABI comes first: when it differs, nothing behind it can be trusted. */
+static ethd_status check_head(const ethd_driver *d, char *what) {
+  if (!d->abi) return ethd__say(what, ETHD_E_ABI, "its table doesn't say its abi: .abi = ETHD_DRIVER_ABI is needed");
+  if (d->abi != ETHD_DRIVER_ABI) return refuse_abi(d->abi, what);
   if (d->size < ETHD_DRIVER_MIN || d->size > sizeof *d)
     return ethd__say(what, ETHD_E_SIZE, "its table has %u bytes, %zu to %zu are allowed: build it with these headers",
                      d->size, ETHD_DRIVER_MIN, sizeof *d);
