@@ -132,13 +132,6 @@ static void load_evidence(ethd__evidence *e) {
 
 /* ---- output ---- */
 
-static char *csv_beside(const char *png) {
-  char *csv = strdup(png);
-  if (!csv) ethd__fail_memory();
-  memcpy(csv + strlen(csv) - 4, ".csv", 4);
-  return csv;
-}
-
 static void refuse_recorded(const char *option, const char *output, const ethd__evidence *e) {
   for (uint32_t i = 0; output && i < e->recording_count; i++)
     if (ethd__recording_holds(e->folders[i], output))
@@ -149,7 +142,7 @@ static void refuse_recorded(const char *option, const char *output, const ethd__
 /* What is read isn't written over, nor is one output by another. Returns the path of the CSV; NULL: none is written. */
 static char *check_outputs(const ethd__evidence *e) {
   char *csv = arg.csv    ? strdup(arg.csv)
-              : arg.plot ? csv_beside(arg.plot)
+              : arg.plot ? ethd__picture_table(arg.plot)
                          : NULL,
        *base = ethd__plant_path(arg.base, ".");
   const char *table = arg.csv ? "--csv" : "--plot";

@@ -150,6 +150,13 @@ const char *ethd__option_picture(const char *option, const char *text) {
   return text;
 }
 
+char *ethd__picture_table(const char *png) {
+  char *csv = strdup(png);
+  if (!csv) ethd__fail_memory();
+  memcpy(csv + strlen(csv) - 4, ".csv", 4);
+  return csv;
+}
+
 void ethd__refuse_input(const char *option, const char *output, const char *input_option, const char *input) {
   struct stat out, in;
   if (!output || !input || stat(output, &out) != 0 || stat(input, &in) != 0) return;

@@ -45,6 +45,9 @@ uint64_t ethd__option_seed(const char *option, const char *text);
 /* Returns a picture's file, which must end in .png and not begin like a command (| or <); else exits 2. */
 const char *ethd__option_picture(const char *option, const char *text);
 
+/* Returns the path of a picture's table, with .csv for .png, which the caller frees; exits 1 without memory. */
+char *ethd__picture_table(const char *png);
+
 /* Exits 2 if the output is the input's file; NULL: there is none. */
 void ethd__refuse_input(const char *option, const char *output, const char *input_option, const char *input);
 

@@ -146,15 +146,8 @@ static void draw_all(ethd_csv_out *out, const ethd_scene *scene, const ethd_setu
 
 /* ---- files ---- */
 
-static char *csv_beside(const char *png) {
-  char *csv = strdup(png);
-  if (!csv) ethd__fail_memory();
-  memcpy(csv + strlen(csv) - 4, ".csv", 4);
-  return csv;
-}
-
 int ethd__scene_plot(const ethd__scene_args *arg, const ethd_scene *scene, const ethd_setup *setup) {
-  char message[ETHD_MESSAGE_MAX], *csv = csv_beside(arg->plot);
+  char message[ETHD_MESSAGE_MAX], *csv = ethd__picture_table(arg->plot);
   ethd__refuse_input("--plot", arg->plot, "info", arg->scene);
   ethd__refuse_input("--plot", csv, "info", arg->scene);
   ethd__refuse_input("--plot", csv, "--config", arg->config);

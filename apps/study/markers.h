@@ -18,7 +18,7 @@ typedef struct ethd__markers {
   const ethd__protocol *protocol;
   const char *address; /* NULL: none */
   int socket;          /* -1: none */
-  atomic_bool told;    /* that markers are lost */
+  atomic_bool told;    /* a loss of markers was reported */
 } ethd__markers;
 
 /* Opens the socket to HOST:PORT; NULL: no markers. The caller sets `protocol` before the first marker. On failure there is no

@@ -9,14 +9,14 @@
 typedef struct ethd__sitting {
   ethd__folder *folder;
   ethd__study_store store;
-  ethd__participant who; /* whose turn it is */
+  ethd__participant who; /* the participant who taps */
   ethd__source source;
   ethd__markers *markers; /* NULL: none */
   ethd__front front;
-  uint32_t first, last; /* participants who are asked for */
+  uint32_t first, last; /* participants of this sitting */
   uint64_t taps;        /* done in this sitting */
-  uint32_t unasked;     /* blocks after which nobody could be asked */
-  uint32_t left;        /* who was ended last in this sitting, from 1; 0: nobody */
+  uint32_t unasked;     /* questionnaires that could not be asked */
+  uint32_t left;        /* the participant who was aborted last in this sitting, from 1; 0: nobody */
   ethd__taken latest;   /* this participant's latest tap in this sitting, without its ticks; attempt 0: none */
   const char *checked;  /* "accept" or "reject": what the experimenter did with it; NULL: nothing */
   bool handed_over, undone, again; /* again: a block that was over has a tap to come */
@@ -27,10 +27,10 @@ typedef struct ethd__sitting {
 ETHD_MUST_CHECK ethd_status ethd__sitting_open(ethd__folder *folder, ethd__hand_source hand, ethd__sitting *out,
                                                char message[ETHD_MESSAGE_MAX]);
 
-/* Makes it this participant's turn. */
+/* Selects the participant who taps next. */
 ETHD_MUST_CHECK ethd_status ethd__sitting_turn(ethd__sitting *s, uint32_t person, char message[ETHD_MESSAGE_MAX]);
 
-/* Runs a statement that puts something into the store, and so into what is known of the participant. */
+/* Runs an INSERT on the store, then updates the participant's progress from it. */
 ETHD_MUST_CHECK ethd_status ethd__sitting_put(ethd__sitting *s, sqlite3_stmt *insert, char message[ETHD_MESSAGE_MAX]);
 
 /* What an event is about. */
@@ -40,7 +40,7 @@ typedef struct ethd__about {
   uint32_t attempt;     /* from 1, 0: none */
 } ethd__about;
 
-/* Writes down something that isn't a tap. */
+/* Records an event that isn't a tap. */
 ETHD_MUST_CHECK ethd_status ethd__sitting_event(ethd__sitting *s, ethd__about about, const char *event,
                                                 const char *detail, char message[ETHD_MESSAGE_MAX]);
 

@@ -38,7 +38,7 @@ char *map_text(void);
 /* Starts the drive and opens the servo with another map; `more`: a third setting, or NULL. */
 ethd_status open_map(const char *text, const ethd_setting *more);
 
-/* The same with the plant's map, in which `now_` stands for `was`. */
+/* The same with the plant's map, after replacing `was` by `now_`. */
 ethd_status open_changed(const char *was, const char *now_);
 
 /* Whether the last tick shows a row of the fault table. */

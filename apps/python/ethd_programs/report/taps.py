@@ -258,7 +258,7 @@ def _recording(cells: Dict[str, str]) -> str:
 
 
 def of_folder(folder: Folder, point: int) -> Tuple[Dict[int, Taps], Set[str]]:
-    """The test taps by point of a grid, 0 without one, of which `point` must be there; and the participants who aren't
+    """The test taps by point of a grid (0 without one), where `point` must exist; and the participants who aren't
     analysed, whose taps are left out."""
     table, participants = folder.table("taps"), folder.table("participants")
     if not table.names:
