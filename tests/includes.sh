@@ -10,7 +10,7 @@ esac
 exec "${PYTHON:-python3}" - <<'END'
 import pathlib, re, sys
 
-FLOORS = [r"lib/maths/|lib/[^/]*$", r"lib/(guard|scene|solids|estimate|law)/", r"lib/core/", r"lib/control/", r"drivers/", r"apps/"]
+FLOORS = [r"lib/maths/|lib/[^/]*$", r"lib/(guard|scene|solids|estimate|law)/", r"lib/core/", r"lib/(control|space)/", r"drivers/", r"apps/"]
 
 def floor(path):
     text = path.as_posix()

@@ -24,6 +24,7 @@
 #include "ethd/scene.h"
 #include "ethd/sense.h"
 #include "ethd/solids.h"
+#include "ethd/space.h"
 #include "ethd/surface.h"
 
 #endif

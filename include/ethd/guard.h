@@ -142,21 +142,24 @@ enum {
 #define ETHD_GUARD_COUNT 9
 #define ETHD_STEEP_MAX 20
 
+/* How a stop goes. */
+typedef struct ethd_guard_stop {
+  int64_t begun;   /* 1: the members below are of a stop that goes on */
+  double start;    /* speed of the links when it began, m/s */
+  double highest;  /* highest speed until its first torque can show, m/s */
+  double given;    /* change of speed that it has commanded so far, m/s */
+  double time;     /* s since it began */
+  double mark;     /* `given` when it last rose by a hundredth of `start`, m/s */
+  double helpless; /* s since then */
+} ethd_guard_stop;
+
 typedef struct ethd_guard_state {
   double last[2];  /* torque of the last tick, Nm */
   double asked[2]; /* what it was before it was limited, Nm */
   double heat[2];  /* of each motor; 1 is what its nominal torque leads to */
   double cut;      /* s for which the torque has been clamped without a break */
   int64_t steep;   /* ticks in a row with too steep a torque */
-  struct {
-    int64_t begun;   /* 1: the members below are of a stop that goes on */
-    double start;    /* speed of the links when it began, m/s */
-    double highest;  /* highest speed until its first torque can show, m/s */
-    double given;    /* change of speed that it has commanded so far, m/s */
-    double time;     /* s since it began */
-    double mark;     /* `given` when it last rose by a hundredth of `start`, m/s */
-    double helpless; /* s since then */
-  } stop;
+  ethd_guard_stop stop;
   uint64_t counts[ETHD_GUARD_COUNT];
   int32_t stopping; /* ETHD_GUARD_* bits of what stops the ring, 0: nothing does; callers may set it */
   int32_t stopped;  /* 1: the ring stands still or the stop has failed, so the torque is zero until this is cleared */

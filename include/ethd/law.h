@@ -71,11 +71,24 @@ typedef struct ethd_tracking_in {
   ethd_vec finger_v;   /* V_f, m/s, in R_0: what a law needs to lead the finger before a contact exists */
 } ethd_tracking_in;
 
+/* The same in space (ethd/space.h). */
+typedef struct ethd_follow_in {
+  ethd_vec3 eps_x;    /* X_f - X, m, in R_0, with the contacts' lead */
+  ethd_vec3 eps_v;    /* V_f - V, m/s */
+  ethd_vec3 finger_v; /* V_f, m/s */
+  double period;      /* s since the last step */
+} ethd_follow_in;
+
+/* A law has a step, for the paper's device, or follows in space, or both. */
 typedef struct ethd_tracking_law {
   ethd_law law;
-  /* tau: joint torques before beta, Nm (eq. 2). [rt] */
+  /* tau: joint torques before beta, Nm (eq. 2). NULL: ethd_control takes J^T of `force`. [rt] */
   ethd_status (*step)(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) ETHD_RT;
   const ethd_gains *gains; /* NULL, or a struct that ends before it: not known, so the loop isn't judged */
+  /* Force, N, or velocity, m/s, of the end effector before beta, in R_0. NULL, or a struct that ends before it:
+     ethd_space refuses the law for such commands. [rt] */
+  ethd_status (*force)(const double *p, void *state, const ethd_follow_in *in, ethd_vec3 *out) ETHD_RT;
+  ethd_status (*velocity)(const double *p, void *state, const ethd_follow_in *in, ethd_vec3 *out) ETHD_RT;
 } ethd_tracking_law;
 
 /* ---- a contact: a local minimum of the distance between the ring's centre and an object ----
@@ -109,6 +122,7 @@ typedef struct ethd_facts {
   double finger_a;      /* m/s^2: acceleration of the finger's estimate along n */
   double *memory;       /* ETHD_MEMORY numbers of the law's own that outlive its contacts: zeroed by create, reset and
                            a change of the law, recorded and replayed */
+  double acceleration;  /* m/s^2 that the device can give along n under velocity commands */
 } ethd_facts;
 #define ETHD_MEMORY 4u
 
@@ -154,7 +168,8 @@ typedef struct ethd_ruling {
   int32_t state;
   int32_t reserved;
   double lead;  /* m along n, added to X_f - X_r; the lead of the contact with the smallest beta counts */
-  double speed; /* m/s along n against the surface that the effector mustn't exceed; INFINITY: none */
+  double speed; /* m/s along n against the surface that the effector mustn't exceed; INFINITY: none. In state ETHD_VO
+                   an effector under velocity commands has this very speed along n, so 0 holds it at the surface */
 } ethd_ruling;
 
 /* A live contact as the law that was replaced leaves it, at the tick of the swap. */
@@ -193,6 +208,10 @@ typedef struct ethd_transition_law {
 #define ETHD_LAW_HAS(law_, field) \
   ((law_)->law.size >= offsetof(ethd_transition_law, field) + sizeof((law_)->field) && (law_)->field)
 
+/* The same of a tracking law. [any, rt-safe] */
+#define ETHD_TRACKING_HAS(law_, field) \
+  ((law_)->law.size >= offsetof(ethd_tracking_law, field) + sizeof((law_)->field) && (law_)->field)
+
 /* Checks ABI, size, kind, state, id, table and entry points of a law; each has a status of its own:
    ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_STATE, ETHD_E_TABLE (also for gains that are no parameters), and ETHD_E_ARGUMENT for
    kind, id, brief and step. [main] */
@@ -203,10 +222,10 @@ ETHD_API const ethd_gains *ethd_law_gains(const ethd_law *law);
 
 /* ---- built in; there is nothing special about them ---- */
 
-ETHD_API extern const ethd_tracking_law ethd_tracking_pd;
+ETHD_API extern const ethd_tracking_law ethd_tracking_pd, ethd_tracking_follow;
 ETHD_API extern const ethd_contact_law ethd_contact_kelvin_voigt, ethd_contact_spring, ethd_contact_hunt_crossley;
 ETHD_API extern const ethd_transition_law ethd_transition_abrupt, ethd_transition_smooth, ethd_transition_offset,
-    ethd_transition_predictive;
+    ethd_transition_predictive, ethd_transition_approach;
 
 /* All of them, ordered by kind; the array ends with NULL. [any] */
 ETHD_API extern const ethd_law *const ethd_laws[];

@@ -1,7 +1,7 @@
 #include "control/estimate.h"
 
 #include "arm_pose.h"
-#include "control/finger_watch.h"
+#include "core/finger.h"
 #include "estimate/filter_methods.h"
 #include "estimate/fit_methods.h"
 #include "estimate/velocity_methods.h"
@@ -149,7 +149,8 @@ static bool use(const ethd__tick *t, ethd_vec reading) {
   /* unreachable: readings, ages and noises are bounded, so that the filter's numbers stay finite */
   if (!is_finite(filter->x[0] + filter->x[1]) || !is_finite(filter->v[0] + filter->v[1]))
     memset(filter, 0, sizeof *filter); /* unreachable, as above; the filter would start anew with the next reading */
-  if (plan->watches_finger) ethd__finger_doubt(t->state, outside || filter->gated != gated);
+  if (plan->watches_finger)
+    ethd__finger_doubt(&t->state->core, &t->state->implausible, outside || filter->gated != gated);
   return status == ETHD_OK;
 }
 
@@ -165,6 +166,15 @@ static void correct(const ethd__tick *t) {
 
 /* ---- the finger ---- */
 
+/* The age counts from the sample's instant, so it includes the reading's latency. The half nanosecond makes a reading
+   that is exactly as old as the limit count as young enough. */
+static void watch(const ethd__tick *t) {
+  ethd__state *state = t->state;
+  const double limits[2] = {t->plan->setup.limits.finger_age, t->plan->setup.limits.finger_lost};
+  double age = 1e-9 * ((double)((uint64_t)t->sense->time_ns - (uint64_t)state->reading_ns) - 0.5);
+  state->absent = ethd__finger_age(&state->core, age, limits, state->absent, t->dt);
+}
+
 static void filter(const ethd__tick *t) {
   const ethd_filter *method = &t->plan->filter;
   ethd_filter_state *s = &t->state->filter;
@@ -173,7 +183,7 @@ static void filter(const ethd__tick *t) {
   else if (s->started)
     ethd__filter_predict(method, s, t->dt);
   if (t->sense->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS)) correct(t);
-  if (t->plan->watches_finger) ethd__finger_watch(t);
+  if (t->plan->watches_finger && s->used > 0) watch(t);
 }
 
 /* A finger that was never seen is taken to be in the ring's centre and to move with it: there is nothing to follow. */

@@ -3,12 +3,25 @@
    1. Ring and finger are estimated from the sense (estimate.c).
    2. The contacts give beta, the sums of their forces, fe (with feed) and fd (damping), and a lead (near.c).
    3. The tracking law turns the finger's place and velocity relative to the ring, with the lead, into tau_t.
-   4. While the finger isn't seen, beta fades (finger_watch.c). */
+   4. While the finger isn't seen, beta fades (core/finger.c). */
 #include "control/evaluate.h"
 
 #include "control/estimate.h"
 #include "control/near.h"
 #include "core/rows.h"
+
+/* Asks a law without a torque of its own for its force. */
+static ethd_status follow(const ethd__tick *t, const ethd_tracking_in *in, double tau[2]) {
+  const ethd__core_plan *plan = &t->plan->core;
+  const ethd_follow_in space = {.eps_x = {in->eps_x.x, in->eps_x.y, 0},
+                                .eps_v = {in->eps_v.x, in->eps_v.y, 0},
+                                .finger_v = {in->finger_v.x, in->finger_v.y, 0},
+                                .period = in->period};
+  ethd_vec3 force = {0, 0, 0};
+  const ethd_status status = plan->follow(plan->tracking_p, t->state->core.tracking.at, &space, &force);
+  ethd_pose_torques(&t->pose, (ethd_vec){force.x, force.y}, tau);
+  return status;
+}
 
 /* Asks the tracking law for its torque before beta, tau. */
 static bool track(const ethd__tick *t, double tau[2]) {
@@ -25,7 +38,7 @@ static bool track(const ethd__tick *t, double tau[2]) {
   ethd_pose_joints(&t->pose, in.eps_v, in.eps_q_dot);
   memcpy(out->eps_q, in.eps_q, sizeof out->eps_q);
   memcpy(out->eps_q_dot, in.eps_q_dot, sizeof out->eps_q_dot);
-  ethd_status status = plan->track(plan->tracking_p, core->tracking.at, &in, tau);
+  ethd_status status = plan->track ? plan->track(plan->tracking_p, core->tracking.at, &in, tau) : follow(t, &in, tau);
   return ethd__law_is_good(core, ETHD_TRACKING, status, isfinite(tau[0]) && isfinite(tau[1]));
 }
 

@@ -70,4 +70,5 @@ void ethd__facts(const ethd__tick *t, const ethd_contact *c, ethd_facts *out) {
   out->finger_age = finger_age(t);
   out->finger_a = finger_acceleration(t, n);
   out->memory = t->state->core.memory;
+  out->acceleration = (double)NAN;
 }

@@ -159,6 +159,12 @@ static bool has_rare_limits(const ethd_limits *limits) {
   return false;
 }
 
+/* A law that follows only by velocity moves no arm that takes torques. */
+static ethd_status check_tracking(const ethd_setup *s, ethd_error *error) {
+  if (s->tracking->step || ETHD_TRACKING_HAS(s->tracking, force)) return ETHD_OK;
+  return ethd__error(error, ETHD_E_ARGUMENT, "tracking.law (it has velocities only)");
+}
+
 static void prepare_core(const ethd_setup *s, ethd__core_plan *out) {
   out->period = s->period;
   out->radius = s->ring_radius;
@@ -169,6 +175,7 @@ static void prepare_core(const ethd_setup *s, ethd__core_plan *out) {
   out->energy = s->limits.energy;
   out->watches_energy = s->limits.energy < (double)INFINITY;
   out->latches = s->limits.latch;
+  out->by_velocity = false;
   out->tracking = s->tracking;
   out->contact = s->contact;
   out->transition = s->transition;
@@ -182,6 +189,7 @@ ETHD__FP_APART static ethd_status prepare(const ethd_setup *s, ethd__plan *out, 
   TRY(ethd__setup_made(s, error));
   TRY(check_fields(s, error));
   TRY(check_laws(s, error));
+  TRY(check_tracking(s, error));
   TRY(within("limits", ethd_limits_check(&s->limits, error), error));
   out->setup = *s;
   prepare_core(s, &out->core);

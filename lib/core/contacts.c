@@ -113,7 +113,8 @@ static void add(ethd__core_tick *t, const contact_work *w, double force) {
   }
   double braking = -r->damping * c->v;
   if (r->speed < (double)INFINITY) {
-    out->bound[out->bounds++] = (struct ethd__bound){c->n, r->speed + ethd_vec3_dot(c->n, w->candidate->v)};
+    out->bound[out->bounds++] =
+        (struct ethd__bound){c->n, r->speed + ethd_vec3_dot(c->n, w->candidate->v), r->state == ETHD_VO};
     braking += hold_speed(t, c, r->speed);
   }
   out->fe = ethd_vec3_add(out->fe, ethd_vec3_scale(force + r->feed, c->n));
@@ -126,6 +127,7 @@ static void claim(ethd__slot *slot, const ethd__candidate *k) {
   slot->place = k->place;
   slot->point = k->local;
   slot->side = k->side;
+  slot->past.n = k->n;
 }
 
 static void change_state(ethd__slot *slot, int32_t state) {
@@ -135,7 +137,6 @@ static void change_state(ethd__slot *slot, int32_t state) {
 
 /* Keeps what a new plan may adopt of a contact. Only the old plan's run at a swap, on the scratch, needs to do so. */
 static void tell(ethd__slot *slot, const ethd_contact *c, const ethd_ruling *r) {
-  slot->past.n = c->n;
   slot->past.offset = r->offset;
   slot->past.d_re = c->d_re;
   slot->past.v = c->v;

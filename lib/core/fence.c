@@ -152,6 +152,18 @@ static ethd_status track(const double *p, void *state, const ethd_tracking_in *i
   return leave_step(&c, ((const ethd_tracking_law *)(const void *)law)->step(p, state, in, tau));
 }
 
+static ethd_status follow_by_force(const double *p, void *state, const ethd_follow_in *in, ethd_vec3 *out) ETHD_RT {
+  const ethd_law *law = block_of(state)->law;
+  call c = enter(law, block_of(state));
+  return leave_step(&c, ((const ethd_tracking_law *)(const void *)law)->force(p, state, in, out));
+}
+
+static ethd_status follow_by_velocity(const double *p, void *state, const ethd_follow_in *in, ethd_vec3 *out) ETHD_RT {
+  const ethd_law *law = block_of(state)->law;
+  call c = enter(law, block_of(state));
+  return leave_step(&c, ((const ethd_tracking_law *)(const void *)law)->velocity(p, state, in, out));
+}
+
 static ethd_status push(const double *p, void *state, double gap, double speed, int entering, double *force) ETHD_RT {
   const ethd_law *law = block_of(state)->law;
   call c = enter(law, block_of(state));
@@ -175,7 +187,13 @@ void ethd__fence_prepare(ethd__core_plan *plan) {
                     ethd__law_is_foreign(&plan->transition->law)};
   plan->foreign = foreign[ETHD_TRACKING] << ETHD_TRACKING | foreign[ETHD_CONTACT] << ETHD_CONTACT |
                   foreign[ETHD_TRANSITION] << ETHD_TRANSITION;
-  plan->track = foreign[ETHD_TRACKING] ? track : plan->tracking->step;
+  const ethd_tracking_law *law = plan->tracking;
+  plan->track = law->step ? foreign[ETHD_TRACKING] ? track : law->step : NULL;
+  plan->follow = NULL;
+  if (plan->by_velocity && ETHD_TRACKING_HAS(law, velocity))
+    plan->follow = foreign[ETHD_TRACKING] ? follow_by_velocity : law->velocity;
+  else if (!plan->by_velocity && ETHD_TRACKING_HAS(law, force))
+    plan->follow = foreign[ETHD_TRACKING] ? follow_by_force : law->force;
   plan->push = foreign[ETHD_CONTACT] ? push : plan->contact->step;
   plan->rule = foreign[ETHD_TRANSITION] ? rule : plan->transition->step;
   plan->range = ETHD_LAW_HAS(plan->transition, range) ? plan->transition->range : NULL;

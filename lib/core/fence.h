@@ -11,7 +11,7 @@
 /* Returns true for a law that isn't one of ethd_laws. [main] */
 bool ethd__law_is_foreign(const ethd_law *law);
 
-/* Fills plan->foreign and the plan's steps (track, push, rule, range) from its laws. [main] */
+/* Fills plan->foreign and the plan's steps (track, follow, push, rule, range) from its laws. [main] */
 void ethd__fence_prepare(ethd__core_plan *plan);
 
 /* Fences the block and lets the law fill it. [rt] */

@@ -18,6 +18,7 @@ typedef struct ethd__core_plan {
   double brake;         /* Ns/m by which a force holds a ruling's speed; 0: the front holds it by its speed */
   bool watches_energy;  /* `energy` is a limit */
   bool latches;         /* limits.latch */
+  bool by_velocity;     /* `follow` is the law's velocity, not its force */
   int foreign;          /* bits: kinds whose law isn't the library's own */
   const ethd_tracking_law *tracking;
   const ethd_contact_law *contact;
@@ -25,6 +26,7 @@ typedef struct ethd__core_plan {
   double tracking_p[ETHD_PARAMS_MAX], transition_p[ETHD_PARAMS_MAX];
   /* the laws' steps as a tick calls them, see fence.h */
   ethd_status (*track)(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) ETHD_RT;
+  ethd_status (*follow)(const double *p, void *state, const ethd_follow_in *in, ethd_vec3 *out) ETHD_RT;
   ethd_status (*push)(const double *p, void *state, double gap, double speed, int entering, double *force) ETHD_RT;
   ethd_status (*rule)(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) ETHD_RT;
   double (*range)(const double *p, double speed) ETHD_RT; /* of the transition law; NULL: it doesn't look ahead */

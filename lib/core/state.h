@@ -28,8 +28,8 @@ typedef struct ethd__slot {
   ethd_vec3 point;             /* touched, in the place's frame */
   struct {
     ethd_vec3 n;            /* in R_0 */
-    double offset, d_re, v; /* as in ethd_past */
-  } past;                   /* at the tick of a swap, under the old plan */
+    double offset, d_re, v; /* as in ethd_past, at the tick of a swap, under the old plan */
+  } past;
   ethd__law_block transition, contact;
   /* passivity observer, where limits.energy is set */
   bool watched;                          /* at its last tick too */

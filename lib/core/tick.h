@@ -18,6 +18,7 @@ typedef struct ethd__touched {
   struct ethd__bound {
     ethd_vec3 n;
     double speed; /* m/s along n, in R_0, that must not be exceeded */
+    bool held;    /* and that the effector has */
   } bound[ETHD_CONTACTS_MAX];
 } ethd__touched;
 

@@ -29,6 +29,23 @@ static inline bool ethd__guard_stops(const ethd_guard_state *s, int32_t bits) ET
   return s->stopping || (bits & (ETHD_GUARD_SPEED | ETHD_GUARD_WORKSPACE | ETHD_GUARD_FAULT));
 }
 
+/* How what a stop brakes moves at this tick. */
+typedef struct ethd__stop_motion {
+  double speed;    /* m/s */
+  double given;    /* m/s^2 that the last command was to give */
+  double reaction; /* s, as in ethd/guard.h */
+  double period, dt;
+} ethd__stop_motion;
+
+/* Counts a tick of the stop, and returns the change of speed, m/s, that it may still command. */
+double ethd__stop_allowed(ethd_guard_stop *stop, const ethd__stop_motion *motion) ETHD_RT;
+
+/* Returns whether a stop of at most `most` s is over: it stands still, or doesn't brake. */
+bool ethd__stop_is_over(const ethd_guard_stop *stop, const ethd__stop_motion *motion, double most) ETHD_RT;
+
+/* Returns the rate, 1/s, at which the stop slows down, where `left` m/s may be commanded, > 0. */
+double ethd__stop_decay(const ethd__stop_motion *motion, double left) ETHD_RT;
+
 /* Replaces the torque by the stop's. */
 void ethd__guard_stop(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *state,
                       const ethd_guard_motion *motion, double torque[2]) ETHD_RT;

@@ -110,45 +110,47 @@ static double acceleration(const ethd_guard_device *d, const double torque[2]) {
   return sqrt(a * a + b * b);
 }
 
-/* Returns the change of speed, m/s, that the stop may command at this tick. */
-static double allowed(const ethd_guard_device *d, ethd_guard_state *s, const ethd_guard_motion *m, double speed) {
-  if (!s->stop.begun) {
-    memset(&s->stop, 0, sizeof s->stop);
-    s->stop.begun = 1;
-    s->stop.start = s->stop.highest = speed;
+double ethd__stop_allowed(ethd_guard_stop *s, const ethd__stop_motion *m) {
+  if (!s->begun) {
+    memset(s, 0, sizeof *s);
+    s->begun = 1;
+    s->start = s->highest = m->speed;
   } else {
-    s->stop.time += m->dt;
-    s->stop.given += acceleration(d, s->last) * m->dt;
+    s->time += m->dt;
+    s->given += m->given * m->dt;
   }
-  if (s->stop.time <= reaction(d, m->estimated) - d->period) s->stop.highest = fmax(s->stop.highest, speed);
-  const double left = UNSEEN * s->stop.start + PER_FALL * (s->stop.highest - speed) - s->stop.given;
-  const double nothing = NOTHING * s->stop.start;
-  s->stop.helpless += m->dt;
-  if (left > nothing || s->stop.given > s->stop.mark + nothing) {
-    s->stop.mark = s->stop.given;
-    s->stop.helpless = 0;
+  if (s->time <= m->reaction - m->period) s->highest = fmax(s->highest, m->speed);
+  const double left = UNSEEN * s->start + PER_FALL * (s->highest - m->speed) - s->given;
+  const double nothing = NOTHING * s->start;
+  s->helpless += m->dt;
+  if (left > nothing || s->given > s->mark + nothing) {
+    s->mark = s->given;
+    s->helpless = 0;
   }
   return left;
 }
 
-static bool is_over(const ethd_limits *limits, const ethd_guard_device *d, const ethd_guard_state *s,
-                    const ethd_guard_motion *m, double speed) {
-  double most = limits->stop_time < (double)INFINITY ? limits->stop_time : ETHD_STOP_TIME;
-  return !(speed >= STILL) || s->stop.time + d->period > most * (1 + 1e-9) ||
-         s->stop.helpless > reaction(d, m->estimated) + d->period;
+bool ethd__stop_is_over(const ethd_guard_stop *s, const ethd__stop_motion *m, double most) {
+  return !(m->speed >= STILL) || s->time + m->period > most * (1 + 1e-9) || s->helpless > m->reaction + m->period;
+}
+
+double ethd__stop_decay(const ethd__stop_motion *m, double left) {
+  const double decay = 1 / (E * m->reaction), hold = fmax(m->dt, m->period); /* a bus may hold for several periods */
+  return decay * m->speed * hold > left ? left / (m->speed * hold) : decay;
 }
 
 void ethd__guard_stop(const ethd_limits *limits, const ethd_guard_device *d, ethd_guard_state *s,
                       const ethd_guard_motion *m, double torque[2]) {
   const double rate[2] = {m->qd[0], m->qd[1] + d->serial * m->qd[0]}; /* of the links' absolute angles */
   const double a = rate[0] * d->link[0], b = rate[1] * d->link[1], speed = sqrt(a * a + b * b);
+  const double most = limits->stop_time < (double)INFINITY ? limits->stop_time : ETHD_STOP_TIME;
+  const ethd__stop_motion motion = {speed, s->stop.begun ? acceleration(d, s->last) : 0, reaction(d, m->estimated),
+                                    d->period, m->dt};
   torque[0] = torque[1] = 0;
-  double left = allowed(d, s, m, speed);
-  if (s->stopping && is_over(limits, d, s, m, speed)) s->stopped = 1;
+  const double left = ethd__stop_allowed(&s->stop, &motion);
+  if (s->stopping && ethd__stop_is_over(&s->stop, &motion, most)) s->stopped = 1;
   if (s->stopped || !(left > 0)) return;
-  double decay = 1 / (E * reaction(d, m->estimated)); /* 1/s */
-  const double hold = fmax(m->dt, d->period);         /* a bus may hold a torque for several periods */
-  if (decay * speed * hold > left) decay = left / (speed * hold);
+  const double decay = ethd__stop_decay(&motion, left); /* 1/s */
   torque[1] = -decay * d->inertia[1] * rate[1];
   torque[0] = -decay * d->inertia[0] * rate[0] + d->serial * torque[1];
 }

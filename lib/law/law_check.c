@@ -5,7 +5,7 @@
 #include "ethd/law.h"
 #include "line.h"
 
-/* The sizes of a law's struct, by kind: the smallest of ABI 0, and this library's. A longer one was built against a
+/* The sizes of a law's struct, by kind: the smallest of ABI 1, and this library's. A longer one was built against a
    newer header, whose functions and fields this library doesn't know. */
 static const size_t smallest[] = {ETHD_TRACKING_LAW_MIN, ETHD_CONTACT_LAW_MIN, ETHD_TRANSITION_LAW_MIN};
 static const size_t largest[] = {sizeof(ethd_tracking_law), sizeof(ethd_contact_law), sizeof(ethd_transition_law)};
@@ -16,7 +16,10 @@ static bool id_is_good(const char *id) {
 }
 
 static bool has_step(const ethd_law *law) {
-  if (law->kind == ETHD_TRACKING) return ((const ethd_tracking_law *)(const void *)law)->step;
+  if (law->kind == ETHD_TRACKING) {
+    const ethd_tracking_law *tracking = (const ethd_tracking_law *)(const void *)law;
+    return tracking->step || ETHD_TRACKING_HAS(tracking, force) || ETHD_TRACKING_HAS(tracking, velocity);
+  }
   if (law->kind == ETHD_CONTACT) return ((const ethd_contact_law *)(const void *)law)->step;
   return ((const ethd_transition_law *)(const void *)law)->step;
 }

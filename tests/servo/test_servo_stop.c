@@ -221,7 +221,7 @@ static bool stop(const trial *t, double *stop_time) {
   ck_assert(!armed);
   const bool old = stats.faults[ETHD_FAULT_FEEDBACK_OLD] || stats.faults[ETHD_FAULT_LOOP] ||
                    stats.faults[ETHD_FAULT_OVERRUNS] || stats.faults[ETHD_FAULT_CLOCK];
-  return !ring.dead && !ring.early && !old && ring.late < 1.5 * t->exchange + 2e-3;
+  return !ring.dead && !ring.early && !old && ring.late < 1.2 * t->exchange + 2e-3;
 }
 
 static void check(const trial *t, double stop_time) {

@@ -48,7 +48,7 @@ AT(ethd_contact, object, 112, 4);
 AT(ethd_contact, body, 116, 4);
 AT(ethd_contact, facts, 120, 8);
 
-SIZE(ethd_facts, 96, 8);
+SIZE(ethd_facts, 104, 8);
 AT(ethd_facts, mass, 0, 8);
 AT(ethd_facts, force, 8, 8);
 AT(ethd_facts, applied, 16, 8);
@@ -61,6 +61,7 @@ AT(ethd_facts, finger_radius, 64, 8);
 AT(ethd_facts, finger_age, 72, 8);
 AT(ethd_facts, finger_a, 80, 8);
 AT(ethd_facts, memory, 88, 8);
+AT(ethd_facts, acceleration, 96, 8);
 
 SIZE(ethd_past, 48, 8);
 AT(ethd_past, offset, 0, 8);
@@ -112,6 +113,8 @@ AT(ethd_law, reset, 56, 8);
 SIZE(ethd_law, 64, 8);
 AT(ethd_tracking_law, step, 64, 8);
 AT(ethd_tracking_law, gains, 72, 8);
+AT(ethd_tracking_law, force, 80, 8);
+AT(ethd_tracking_law, velocity, 88, 8);
 AT(ethd_contact_law, step, 64, 8);
 AT(ethd_contact_law, gains, 72, 8);
 AT(ethd_transition_law, step, 64, 8);
@@ -247,9 +250,17 @@ TEST(test_every_law) {
   static const struct {
     const char *id;
     int kind;
-  } rows[] = {{"pd", ETHD_TRACKING},           {"kelvin-voigt", ETHD_CONTACT},  {"spring", ETHD_CONTACT},
-              {"hunt-crossley", ETHD_CONTACT}, {"abrupt", ETHD_TRANSITION},     {"smooth", ETHD_TRANSITION},
-              {"offset", ETHD_TRANSITION},     {"predictive", ETHD_TRANSITION}, {NULL, 0}};
+  } rows[] = {{"pd", ETHD_TRACKING},
+              {"follow", ETHD_TRACKING},
+              {"kelvin-voigt", ETHD_CONTACT},
+              {"spring", ETHD_CONTACT},
+              {"hunt-crossley", ETHD_CONTACT},
+              {"abrupt", ETHD_TRANSITION},
+              {"smooth", ETHD_TRANSITION},
+              {"offset", ETHD_TRANSITION},
+              {"predictive", ETHD_TRANSITION},
+              {"approach", ETHD_TRANSITION},
+              {NULL, 0}};
   ethd_error error;
   for (int i = 0; rows[i].id || ethd_laws[i]; i++) {
     ck_assert_msg(rows[i].id && ethd_laws[i], "law %d: %s stands on one side only", i,

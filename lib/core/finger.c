@@ -1,0 +1,26 @@
+#include "core/finger.h"
+
+#include "core/rows.h"
+
+/* s in which tracking fades out or in, as long as a swap takes by default (transition.swap_time). */
+#define FADE 0.020
+
+/* Implausible readings in a row that stop the device: as many as make the filter start anew (ETHD_FILTER_GATED_MAX).
+   The proximity ring, at 300 Hz, takes 17 ms for them. */
+#define IMPLAUSIBLE_MAX 5
+
+double ethd__finger_age(ethd__core *core, double age, const double limits[2], double absent, double dt) {
+  bool old = !(age <= limits[0]);
+  if (old) ethd__note(core, ETHD_FAULT_FINGER_OLD);
+  if (!(age <= limits[1])) ethd__note(core, ETHD_FAULT_FINGER_LOST);
+  return old ? fmin(absent + dt / FADE, 1) : fmax(absent - dt / FADE, 0);
+}
+
+void ethd__finger_doubt(ethd__core *core, int64_t *in_a_row, bool implausible) {
+  *in_a_row = implausible ? *in_a_row + 1 : 0;
+  if (!implausible) return;
+  if (*in_a_row < IMPLAUSIBLE_MAX)
+    ethd__note(core, ETHD_FAULT_ESTIMATE);
+  else
+    ethd__note_grave(core, ETHD_FAULT_ESTIMATE);
+}

@@ -1,0 +1,184 @@
+/* From what the laws ask for to the command.
+
+     velocity   asked -> fades -> bounds of contacts and workspace -> speed -> acceleration, along n first
+     force      asked -> force -> fades -> rate, and force again
+
+   The bounds have the last word over the direction, so a fade can't drive the effector into a wall. A velocity command
+   stops with the acceleration; a force command stops by the guard's law (ethd/guard.h), with the mass of the ability. */
+#include "core/fade.h"
+#include "core/rows.h"
+#include "guard/parts.h"
+#include "space/state.h"
+
+#define FAST 1.05    /* times the speed limit at which a commanded effector is stopped */
+#define OUTSIDE 1e-9 /* m: more than rounding takes an effector over its workspace's bound */
+#define BOUNDS (ETHD_CONTACTS_MAX + ETHD__FACES)
+
+/* ---- the workspace ---- */
+
+/* Returns the highest speed from which the command can stop within d, m: as in law/transition_approach.c, with a command
+   that is late by its period only. A command that is held for it then goes no farther than d. */
+static double highest(const ethd__space_tick *t, double d) {
+  const double late = t->core.dt, a = t->plan->setup.acceleration;
+  return d > 0 ? 2 * d / (late + sqrt(late * late + 2 * d / a)) : 0;
+}
+
+/* Gives the distances to the workspace's faces, and their outward normals; returns how many there are. */
+static int faces(const ethd__space_tick *t, ethd_vec3 x, double d[ETHD__FACES], ethd_vec3 n[ETHD__FACES]) {
+  const ethd_space_setup *s = &t->plan->setup;
+  int count = 0;
+  if (t->plan->has_box) {
+    const double low[3] = {s->x_min, s->y_min, s->z_min}, high[3] = {s->x_max, s->y_max, s->z_max};
+    const double at[3] = {x.x, x.y, x.z};
+    for (int i = 0; i < 3; i++) {
+      const ethd_vec3 axis = {i == 0, i == 1, i == 2};
+      d[count] = at[i] - low[i];
+      n[count++] = ethd_vec3_scale(-1, axis);
+      d[count] = high[i] - at[i];
+      n[count++] = axis;
+    }
+  }
+  if (t->plan->has_ball) {
+    const ethd_vec3 r = ethd_vec3_sub(x, (ethd_vec3){s->reach_x, s->reach_y, s->reach_z});
+    const double length = ethd_vec3_norm(r);
+    d[count] = s->reach - length;
+    n[count++] = length > 0 ? ethd_vec3_scale(1 / length, r) : (ethd_vec3){1, 0, 0};
+  }
+  return count;
+}
+
+/* ---- what stops the effector ---- */
+
+static int32_t breach(const ethd__space_tick *t, const double *d, int count) {
+  const double most = t->plan->setup.speed * (t->plan->core.by_velocity ? FAST : 1);
+  int32_t bits = 0;
+  if (!(ethd_vec3_norm(ethd_vec3_of(t->sense->v)) <= most)) bits |= ETHD_GUARD_SPEED;
+  for (int i = 0; i < count; i++)
+    if (!(d[i] >= -OUTSIDE)) bits |= ETHD_GUARD_WORKSPACE;
+  return bits;
+}
+
+/* ---- velocity ---- */
+
+/* Goes from `from` towards `to` by at most `most`, first along the bounds' normals, in their order. */
+static ethd_vec3 towards(ethd_vec3 from, ethd_vec3 to, double most, const struct ethd__bound *bounds, int count) {
+  ethd_vec3 left = ethd_vec3_sub(to, from), own[3];
+  int found = 0;
+  for (int i = 0; i < count && found < 3; i++) {
+    ethd_vec3 e = bounds[i].n;
+    for (int k = 0; k < found; k++) e = ethd_vec3_sub(e, ethd_vec3_scale(ethd_vec3_dot(e, own[k]), own[k]));
+    const double length = ethd_vec3_norm(e);
+    if (length < 1e-6) continue;
+    own[found] = ethd_vec3_scale(1 / length, e);
+    const double wanted = ethd_vec3_dot(left, own[found]);
+    const double part = fabs(wanted) <= most ? wanted : copysign(most, wanted);
+    from = ethd_vec3_add(from, ethd_vec3_scale(part, own[found]));
+    left = ethd_vec3_sub(left, ethd_vec3_scale(wanted, own[found]));
+    most = sqrt(fmax(most * most - part * part, 0));
+    found++;
+  }
+  const double rest = ethd_vec3_norm(left);
+  return ethd_vec3_add(from, rest > most ? ethd_vec3_scale(most / rest, left) : left);
+}
+
+static ethd_vec3 limit_velocity(ethd__space_tick *t, ethd_vec3 asked, const double *d, const ethd_vec3 *n, int faces_) {
+  const ethd_space_setup *s = &t->plan->setup;
+  const ethd__touched *touched = &t->core.touched;
+  struct ethd__bound bounds[BOUNDS];
+  int count = touched->bounds;
+  for (int i = 0; i < count; i++) bounds[i] = touched->bound[i];
+  for (int i = 0; i < faces_; i++) bounds[count++] = (struct ethd__bound){n[i], highest(t, d[i]), false};
+  ethd_vec3 u = ethd__space_within(asked, bounds, count);
+  const double speed = ethd_vec3_norm(u);
+  if (speed > s->speed) {
+    u = ethd_vec3_scale(s->speed / speed, u);
+    t->trace->guard |= ETHD_GUARD_TORQUE;
+  }
+  const ethd_vec3 last = t->state->last;
+  if (ethd_vec3_norm(ethd_vec3_sub(u, last)) <= s->acceleration * t->core.dt) return u;
+  t->trace->guard |= ETHD_GUARD_RATE;
+  return towards(last, u, s->acceleration * t->core.dt, bounds, count);
+}
+
+static ethd_vec3 stop_velocity(ethd__space_tick *t) {
+  const ethd_vec3 zero = {0, 0, 0};
+  const ethd_vec3 u = towards(t->state->last, zero, t->plan->setup.acceleration * t->core.dt, NULL, 0);
+  if (u.x == 0 && u.y == 0 && u.z == 0 && t->state->stopping) t->state->stopped = 1;
+  return t->state->stopped ? zero : u;
+}
+
+/* ---- force ---- */
+
+/* Returns the vector, cut to a length; sets *cut if it was longer. */
+static ethd_vec3 at_most(ethd_vec3 f, double most, bool *cut) {
+  const double length = ethd_vec3_norm(f);
+  if (length <= most) return f;
+  *cut = true;
+  return ethd_vec3_scale(most / length, f);
+}
+
+static ethd_vec3 limit_force(ethd__space_tick *t, ethd_vec3 f) {
+  const ethd_space_setup *s = &t->plan->setup;
+  const ethd_vec3 last = t->state->last;
+  bool cut = false, steep = false;
+  f = at_most(f, s->force, &cut);
+  f = ethd_vec3_add(last, at_most(ethd_vec3_sub(f, last), s->force_rate * t->core.dt, &steep));
+  if (steep) f = at_most(f, s->force, &cut);
+  t->trace->guard |= (cut ? ETHD_GUARD_TORQUE : 0) | (steep ? ETHD_GUARD_RATE : 0);
+  return f;
+}
+
+static ethd_vec3 stop_force(ethd__space_tick *t) {
+  ethd__space_state *state = t->state;
+  const ethd_space_setup *s = &t->plan->setup;
+  const double mass = t->ability.mass >= 0 ? t->ability.mass : ETHD_MASS_ASSUMED;
+  const double delay = t->ability.delay >= 0 ? t->ability.delay : ETHD_DELAY_ASSUMED;
+  const ethd_vec3 v = ethd_vec3_of(t->sense->v), none = {0, 0, 0};
+  const ethd__stop_motion motion = {ethd_vec3_norm(v), state->stop.begun ? ethd_vec3_norm(state->last) / mass : 0,
+                                    delay + s->period, s->period, t->core.dt};
+  const double left = ethd__stop_allowed(&state->stop, &motion);
+  if (state->stopping && ethd__stop_is_over(&state->stop, &motion, s->stop_time)) state->stopped = 1;
+  if (state->stopped || !(left > 0)) return none;
+  bool cut = false;
+  return at_most(ethd_vec3_scale(-mass * ethd__stop_decay(&motion, left), v), s->force, &cut);
+}
+
+/* ---- both ---- */
+
+static ethd_vec3 faded(ethd__space_tick *t, ethd_vec3 asked) {
+  ethd__fade *fade = &t->state->core.fade;
+  const ethd__fade_start start = {t->core.soft, t->old, t->plan->setup.swap_time};
+  double u[3];
+  if (!ethd__fade_advance(fade, t->core.dt, t->core.soft, t->old)) return asked;
+  ethd_vec3_put(asked, u);
+  ethd__fade_apply(fade, &start, 3, u);
+  return ethd_vec3_of(u);
+}
+
+void ethd__space_limit(ethd__space_tick *t) {
+  ethd__space_state *state = t->state;
+  ethd_vec3 asked = ethd_vec3_of(t->trace->asked), n[ETHD__FACES];
+  double d[ETHD__FACES];
+  const int count = t->plan->has_box || t->plan->has_ball ? faces(t, t->core.x, d, n) : 0;
+  const bool by_velocity = t->plan->core.by_velocity;
+  int32_t bits = breach(t, d, count);
+  if (t->plan->core.latches) state->stopping |= bits;
+  bits |= state->stopping & ETHD_GUARD_FAULT;
+  t->trace->guard = bits;
+  if (t->core.soft) state->last = (ethd_vec3){0, 0, 0};
+  if (bits || state->stopping) {
+    ethd__fade_end(&state->core.fade);
+    state->last = by_velocity ? stop_velocity(t) : stop_force(t);
+  } else {
+    state->stop.begun = 0;
+    asked = faded(t, asked);
+    state->last = by_velocity ? limit_velocity(t, asked, d, n, count) : limit_force(t, asked);
+  }
+  const double sum = state->last.x + state->last.y + state->last.z;
+  if (!(sum - sum == 0)) { /* unreachable: what laws and sense give is finite and small; a sum may still overflow */
+    state->last = (ethd_vec3){0, 0, 0};
+    t->trace->guard |= ETHD_GUARD_FINITE;
+  }
+  state->cut = t->trace->guard & ETHD_GUARD_TORQUE ? state->cut + t->core.dt : 0;
+  ethd_vec3_put(state->last, t->trace->command);
+}

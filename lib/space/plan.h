@@ -1,0 +1,21 @@
+/* A plan of the front for space: a posted setup with all that [main] can work out from it. */
+#ifndef ETHD__SPACE_PLAN_H
+#define ETHD__SPACE_PLAN_H
+
+#include "core/plan.h"
+#include "ethd/space.h"
+
+#define ETHD__FACES 7 /* of the workspace: a box's six and the ball's */
+
+typedef struct ethd__space_plan {
+  ethd__core_plan core;
+  ethd_space_setup setup;
+  ethd_filter filter;
+  bool has_box, has_ball; /* the workspace has bounds */
+  bool watches_finger;    /* finger_age or finger_lost is set */
+} ethd__space_plan;
+
+/* Checks the setup and works out the plan; a failure leaves the plan undefined. [main] */
+ethd_status ethd__space_prepare(const ethd_space_setup *setup, ethd__space_plan *out, ethd_error *error);
+
+#endif
