@@ -10,6 +10,10 @@
 #define TICKS 1000 /* of each arm */
 #define NEAR 1e-11
 
+/* As ck_assert_msg, which also writes to a file each time. */
+#define KEPT(so, ...) \
+  if (!(so)) ck_abort_msg(__VA_ARGS__)
+
 static uint64_t next;
 
 static double any(double a, double b) { return draw(next++, a, b); }
@@ -64,11 +68,12 @@ static double move(const arm *a, uint32_t i, double command, double *q, double *
 static void watch(const arm *a, uint32_t i, double was, double command, double furthest, double v) {
   const ethd_joint_limit *j = &a->limits.joint[i];
   const double most = j->acceleration * a->limits.period;
-  ck_assert_msg(furthest <= j->most + NEAR && furthest >= j->least - NEAR, "%.17g outside %.17g %.17g", furthest,
-                j->least, j->most);
-  ck_assert_msg(fabs(v) <= j->speed * (1 + NEAR), "%.17g faster than %.17g", v, j->speed);
-  ck_assert_msg(fabs(v - was) <= most * (1 + 1e-9) + NEAR, "a step of %.17g, allowed %.17g", v - was, most);
-  if (a->limits.kind == ETHD_JOINTS_TORQUE) ck_assert(fabs(command) <= j->torque);
+  KEPT(furthest <= j->most + NEAR && furthest >= j->least - NEAR, "%.17g outside %.17g %.17g", furthest, j->least,
+       j->most);
+  KEPT(fabs(v) <= j->speed * (1 + NEAR), "%.17g faster than %.17g", v, j->speed);
+  KEPT(fabs(v - was) <= most * (1 + 1e-9) + NEAR, "a step of %.17g, allowed %.17g", v - was, most);
+  const bool strong = a->limits.kind == ETHD_JOINTS_TORQUE && !(fabs(command) <= j->torque);
+  KEPT(!strong, "%.17g Nm of %.17g", command, j->torque);
 }
 
 static void run(arm *a) {
@@ -77,12 +82,13 @@ static void run(arm *a) {
     wish(a, tick);
     memcpy(command, a->wish, sizeof command);
     const ethd_joints_ruling r = ethd_guard_joints(&a->limits, a->q, a->v, command);
-    ck_assert(r.share >= 0 && r.share <= 1);
+    KEPT(r.share >= 0 && r.share <= 1, "a share of %.17g", r.share);
     for (uint32_t i = 0; i < a->limits.count; i++) most = fmax(most, fabs(a->wish[i]));
     for (uint32_t i = 0; i < a->limits.count; i++) {
       const double was = a->v[i];
-      if (!r.turned && r.bound != ETHD_JOINTS_FINITE)
-        ck_assert_msg(fabs(command[i] - r.share * a->wish[i]) <= 1.01e-6 * most, "the direction isn't kept");
+      const bool straight =
+          r.turned || r.bound == ETHD_JOINTS_FINITE || fabs(command[i] - r.share * a->wish[i]) <= 1.01e-6 * most;
+      KEPT(straight, "the direction isn't kept");
       const double furthest = move(a, i, command[i], &a->q[i], &a->v[i]);
       watch(a, i, was, command[i], furthest, a->v[i]);
     }
