@@ -1,5 +1,5 @@
 #!/bin/sh
-# apps/examples, compiled against the installed tree and run: a wall, a law in ethd-tap, a driver that ethd_conform asks, and
+# apps/examples, compiled against the installed tree and run: a wall, an effector in space, a law in ethd-tap, a driver that ethd_conform asks, and
 # teleoperation over a line that delays, loses and reorders, that carries nonsense and surfaces that jump, and that dies.
 set -u
 work=$(mktemp -d)
@@ -30,6 +30,11 @@ compiled() { # NAME MODULE FLAGS...: as the first lines of its source say
 compiled wall ethd && "$work/wall" >"$work/wall.out" || fail "wall: exit $?"
 awk '{ gsub(/[^-+.e0-9 ]/, ""); rows++; least = $1 < least ? $1 : least; most = $3 > most ? $3 : most }
   END { exit !(rows == 80 && least < -0.001) }' "$work/wall.out" || fail "wall: $(tail -n 3 "$work/wall.out")"
+
+# ---- space: within the stopping distance it slows down, and at the end it stands in the wall ----
+compiled space ethd && "$work/space" >"$work/space.out" || fail "space: exit $?"
+awk '{ rows++; if ($1 == "nan") next; d = $1; v = $6; state = $9; if (d < -1e-6 || (d > 0 && v * 0.009 + v * v / 16 > d + 1e-3)) bad = 1 }
+  END { exit !(rows == 50 && !bad && d < 1e-4 && v < 1e-3 && state == 2) }' "$work/space.out" || fail "space: $(tail -n 3 "$work/space.out")"
 
 # ---- law: tapped beside ours, since its configuration names it; swapped in by name, its taps differ ----
 compiled law ethd -shared -fPIC && cp "$work/law" "$work/mine.so"

@@ -80,6 +80,7 @@ static void continue_by_place(const ethd__space_tick *t, unsigned open, ethd__ca
 
 /* Turns a unit vector towards another one by at most `most` rad. */
 static ethd_vec3 turned(ethd_vec3 from, ethd_vec3 to, double most) {
+  if (from.x == to.x && from.y == to.y && from.z == to.z) return to; /* nearly always */
   ethd_vec3 side = ethd_vec3_sub(to, ethd_vec3_scale(ethd_vec3_dot(from, to), from));
   const double across = ethd_vec3_norm(side);
   if (ethd_atan2(across, ethd_vec3_dot(from, to)) <= most) return to;

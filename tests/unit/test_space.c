@@ -261,6 +261,30 @@ TEST_LOOP(test_approach, 0, 2) {
   ck_assert(worst_speed < (late > 8 ? 0.1 : 0.05));
 }
 
+/* An oblique tap is the straight one along n, with v cos a, and goes on along the wall as the finger does. */
+TEST(test_oblique) {
+  const ethd_vec3 n = {0, 0, 1}, side = {0.6, 0.8, 0};
+  mover straight = {.setup = ethd_space_setup_default()}, oblique = straight;
+  straight.setup.radius = oblique.setup.radius = 0.068;
+  straight.setup.ability.acceleration = oblique.setup.ability.acceleration = 20;
+  mover_open(&straight, 8, (ethd_vec3){0, 0, 0});
+  mover_open(&oblique, 8, (ethd_vec3){0, 0, 0});
+  for (int i = 0; i < 1500; i++) {
+    const double t = 1e-3 * i, v = 0.3;
+    const ethd_vec3 along = ethd_vec3_scale(v * t, n), across = ethd_vec3_scale(0.5 * v * t, side);
+    const ethd_vec3 v_n = ethd_vec3_scale(v, n), v_t = ethd_vec3_scale(0.5 * v, side);
+    const ethd_surface a = wall_at(straight.at, n, 0.35, 0), b = wall_at(oblique.at, n, 0.35, 0);
+    mover_step(&straight, along, v_n, &a, 1);
+    mover_step(&oblique, ethd_vec3_add(along, across), ethd_vec3_add(v_n, v_t), &b, 1);
+    ck_assert(fabs(straight.at.z - oblique.at.z) < 1e-12);
+    near_to(ethd_vec3_sub(oblique.at, straight.at), ethd_vec3_scale(0.5 * v * (t + 1e-3), side), 1e-12);
+  }
+  ck_assert_int_eq(straight.trace.state, ETHD_VO);
+  ck_assert(fabs(straight.at.z - 0.35 + 0.068) < 1e-6);
+  ethd_space_destroy(straight.space);
+  ethd_space_destroy(oblique.space);
+}
+
 /* In the seam of two walls the effector rests R_r from both: the closed form of two equations. */
 TEST(test_seam) {
   mover m = {.setup = ethd_space_setup_default()};
