@@ -3,8 +3,8 @@
      velocity   asked -> fades -> bounds of contacts and workspace -> speed -> acceleration, along n first
      force      asked -> force -> fades -> rate, and force again
 
-   The bounds have the last word over the direction, so a fade can't drive the effector into a wall. A velocity command
-   stops with the acceleration; a force command stops by the guard's law (ethd/guard.h), with the mass of the ability. */
+   The bounds have the last word over the direction, so a fade can't drive the effector into a wall; the workspace's have
+   it over the contacts', so a wall that moves can't push the effector out. A velocity command stops with the acceleration; a force command stops by the guard's law (ethd/guard.h), with the mass of the ability. */
 #include "core/fade.h"
 #include "core/rows.h"
 #include "guard/parts.h"
@@ -17,9 +17,10 @@
 /* ---- the workspace ---- */
 
 /* Returns the highest speed from which the command can stop within d, m: as in law/transition_approach.c, with a command
-   that is late by its period only. A command that is held for it then goes no farther than d. */
+   that is late by its period only. A command that is held for it then goes no farther than d. Half of the acceleration
+   counts, so that four faces can be braked for at once, in a corner of the box at the ball: 4 (a / 2)^2 = a^2. */
 static double highest(const ethd__space_tick *t, double d) {
-  const double late = t->core.dt, a = t->plan->setup.acceleration;
+  const double late = t->core.dt, a = t->plan->setup.acceleration / 2;
   return d > 0 ? 2 * d / (late + sqrt(late * late + 2 * d / a)) : 0;
 }
 
@@ -84,11 +85,12 @@ static ethd_vec3 towards(ethd_vec3 from, ethd_vec3 to, double most, const struct
 static ethd_vec3 limit_velocity(ethd__space_tick *t, ethd_vec3 asked, const double *d, const ethd_vec3 *n, int faces_) {
   const ethd_space_setup *s = &t->plan->setup;
   const ethd__touched *touched = &t->core.touched;
-  struct ethd__bound bounds[BOUNDS];
-  int count = touched->bounds;
-  for (int i = 0; i < count; i++) bounds[i] = touched->bound[i];
+  struct ethd__bound bounds[BOUNDS], first[BOUNDS];
+  int count = 0, firsts = 0;
   for (int i = 0; i < faces_; i++) bounds[count++] = (struct ethd__bound){n[i], highest(t, d[i]), false};
+  for (int i = 0; i < touched->bounds; i++) bounds[count++] = touched->bound[i];
   ethd_vec3 u = ethd__space_within(asked, bounds, count);
+  if (faces_) u = ethd__space_within(u, bounds, faces_);
   const double speed = ethd_vec3_norm(u);
   if (speed > s->speed) {
     u = ethd_vec3_scale(s->speed / speed, u);
@@ -97,7 +99,9 @@ static ethd_vec3 limit_velocity(ethd__space_tick *t, ethd_vec3 asked, const doub
   const ethd_vec3 last = t->state->last;
   if (ethd_vec3_norm(ethd_vec3_sub(u, last)) <= s->acceleration * t->core.dt) return u;
   t->trace->guard |= ETHD_GUARD_RATE;
-  return towards(last, u, s->acceleration * t->core.dt, bounds, count);
+  for (int i = 0; i < count; i++) /* of the faces only those that are braked for */
+    if (i >= faces_ || ethd_vec3_dot(bounds[i].n, last) > bounds[i].speed) first[firsts++] = bounds[i];
+  return towards(last, u, s->acceleration * t->core.dt, first, firsts);
 }
 
 static ethd_vec3 stop_velocity(ethd__space_tick *t) {
