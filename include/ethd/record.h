@@ -21,8 +21,8 @@ typedef struct ethd_column {
   char type;       /* 'f' double, 'i' int64_t */
 } ethd_column;
 
-/* The columns of an ethd_trace, ended by a NULL name. */
-ETHD_API extern const ethd_column ethd_trace_columns[];
+/* The columns of an ethd_trace and of an ethd_space_trace (space.h), ended by a NULL name. */
+ETHD_API extern const ethd_column ethd_trace_columns[], ethd_space_trace_columns[];
 
 typedef struct ethd_npy ethd_npy;
 

@@ -39,9 +39,10 @@ enum {
   ETHD_SPACE_HAVE_READING = 2,      /* reading: a position has arrived, taken at sample_ns */
   ETHD_SPACE_HAVE_READING_V = 4,    /* reading_v, with its reading_v_noise */
   ETHD_SPACE_HAVE_EXTRAPOLATED = 8, /* the tracker has extrapolated the reading to time_ns */
-  ETHD_SPACE_HAVE_NORMAL = 16,      /* normal: where the plate faces; without it where it was told to face */
-  ETHD_SPACE_HAVE_ABILITY = 32,     /* ability: of this tick, in the place of the setup's */
-  ETHD_SPACE_SURFACES = 64          /* not in `have`: the value of row INPUT for the surfaces */
+  ETHD_SPACE_HAVE_NORMAL = 16,  /* normal: where the plate faces. Without it X stands before the plate where that was
+                                       told to face, and in the face until a first surface is near */
+  ETHD_SPACE_HAVE_ABILITY = 32, /* ability: of this tick, in the place of the setup's */
+  ETHD_SPACE_SURFACES = 64      /* not in `have`: the value of row INPUT for the surfaces */
 };
 
 #define ETHD_ABILITY 6 /* numbers of an ethd_ability */
@@ -107,7 +108,8 @@ typedef struct ethd_space_sense {
   ETHD_SPACE_SENSE_FIELDS(ETHD_FIELD)
 } ethd_space_sense;
 
-/* One whole tick: a step with `sense` and the `near` surfaces gives the other fields to the bit. */
+/* One whole tick: a step with `sense` and the `near` surfaces gives the other fields to the bit, but for `overflow`, and
+   where surfaces were refused (row INPUT). record.h has its columns. */
 typedef struct ethd_space_trace {
   ethd_space_sense sense;
   ETHD_SPACE_TRACE_FIELDS(ETHD_FIELD)

@@ -131,7 +131,8 @@ bool ethd__space_touch(ethd__space_tick *t) {
   core->front = t;
   if (!ethd__contacts_begin(core)) return false;
   t->trace->overflow = 0;
-  const int count = find_near(t, ethd__candidates_range(core), near, depth);
+  t->range = fmax(t->range, ethd__candidates_range(core));
+  const int count = find_near(t, t->range, near, depth);
   t->trace->near = count;
   face(t, count ? &t->surfaces[near[0]] : NULL);
   if (!count && !core->state->live) return true;

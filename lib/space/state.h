@@ -40,6 +40,7 @@ typedef struct ethd__space_tick {
   uint32_t count;
   const double *old;    /* at a swap, what the old plan would have commanded; NULL: nothing to fade from */
   int64_t periods;      /* since the last tick, missed ones included */
+  double range;         /* m from X within which surfaces are shown; before a tick works it out, the least */
   ethd__core_tick core; /* soft, dt, X and the finger, and what the contacts lead to */
   ethd_ability ability;
   ethd_space_trace *trace;

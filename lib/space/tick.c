@@ -117,6 +117,7 @@ static void prepare(ethd__space_tick *t) {
   t->core.plan = &t->plan->core;
   t->core.state = &t->state->core;
   t->core.keeps = t->state == t->scratch;
+  t->core.touched.bounds = 0;
   place(t);
   ethd__space_finger(t);
   ethd_vec3_put(t->core.finger, t->trace->xf);
@@ -158,6 +159,7 @@ static void swap(ethd__space_tick *t, double old[3]) {
   before.state = t->scratch;
   const bool held = evaluate(&before);
   if (held) ethd__space_limit(&before);
+  t->range = before.range; /* the trace shows what either plan looks at */
   memcpy(old, t->trace->command, sizeof t->trace->command);
   swap_state(t, held ? t->scratch : NULL);
   if (!held) {
@@ -206,10 +208,7 @@ static void judge(ethd__space_tick *t, ethd__halt halt) {
   const int64_t common = t->plan->core.by_velocity ? ETHD_GUARD_TORQUE | ETHD_GUARD_RATE : 0;
   const int64_t bits = t->trace->guard & ~common;
   for (int64_t left = t->trace->guard; left; left &= left - 1) core->counters.guard[__builtin_ctzll((uint64_t)left)]++;
-  if (!bits && !core->fault && !ethd__rows_any(&core->met.rows)) {
-    core->clean += t->periods;
-    return;
-  }
+  if (!bits && !core->fault && !ethd__rows_any(&core->met.rows)) return;
   if (bits) ethd__note_guard(core, bits, t->state->cut);
   t->trace->fault = ethd__judge(core, t->plan->core.latches, halt, t->periods);
 }
@@ -219,6 +218,7 @@ void ethd__space_tick_run(ethd__space_tick *t) {
   const ethd__halt halt = {&state->stopping, &state->stopped};
   double old[3];
   t->old = NULL;
+  t->range = 0;
   t->periods = at_most(t->sense->missed > 0 ? at_most(t->sense->missed) + 1 : 1);
   const int64_t gap = at_most(state->blind + t->periods);
   t->core.dt = (double)gap * t->plan->setup.period;

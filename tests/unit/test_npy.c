@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "ethd/record.h"
+#include "ethd/space.h"
 #include "record/npy_parts.h"
 #include "unit/suite.h"
 
@@ -159,14 +160,20 @@ TEST(test_full_disk) {
 }
 
 /* A trace's columns cover it without a gap, in the order of its fields. */
-TEST(test_trace_columns) {
+static size_t covered(const ethd_column *all, size_t bytes) {
   size_t at = 0, count = 0;
-  for (const ethd_column *c = ethd_trace_columns; c->name; c++, count++) {
+  for (const ethd_column *c = all; c->name; c++, count++) {
     ck_assert_uint_eq(c->offset, at);
     at += c->count * (size_t)8;
-    for (const ethd_column *other = ethd_trace_columns; other < c; other++) ck_assert_str_ne(other->name, c->name);
+    for (const ethd_column *other = all; other < c; other++) ck_assert_str_ne(other->name, c->name);
   }
-  ck_assert_uint_eq(at, sizeof(ethd_trace));
+  ck_assert_uint_eq(at, bytes);
+  return count;
+}
+
+TEST(test_trace_columns) {
+  const size_t count = covered(ethd_trace_columns, sizeof(ethd_trace));
+  (void)covered(ethd_space_trace_columns, sizeof(ethd_space_trace));
   ck_assert_str_eq(ethd_trace_columns[0].name, "time_ns");
   ck_assert_str_eq(ethd_trace_columns[count - 1].name, "learnt");
   ck_assert_uint_eq(ethd_trace_columns[count - 1].offset, offsetof(ethd_trace, learnt));

@@ -5,27 +5,10 @@
 
 #include "ethd/space.h"
 #include "space/state.h"
-#include "unit/draw.h"
+#include "unit/mover.h"
 #include "unit/rig.h"
 
 static ethd_error error;
-static uint64_t seed = 1;
-
-static double between(double a, double b) { return draw(seed++, a, b); }
-
-static ethd_vec3 any_unit(void) {
-  for (;;) {
-    const ethd_vec3 a = {between(-1, 1), between(-1, 1), between(-1, 1)};
-    const double length = ethd_vec3_norm(a);
-    if (length > 0.1 && length < 1) return ethd_vec3_scale(1 / length, a);
-  }
-}
-
-static ethd_space *made(const ethd_space_setup *setup) {
-  ethd_space *space;
-  ck_assert_msg(ethd_space_create(setup, &space, &error) == ETHD_OK, "%s", error.name);
-  return space;
-}
 
 /* ---- the plane, turned ---- */
 
@@ -161,50 +144,6 @@ TEST(test_within_bounds) {
 }
 
 /* ---- a device that takes velocities ---- */
-
-#define LATE_MAX 64
-
-typedef struct mover {
-  ethd_space *space;
-  ethd_space_setup setup;
-  ethd_vec3 at, v;              /* commanded */
-  ethd_vec3 past[LATE_MAX + 1]; /* commanded places, the newest first: the device is `late` ticks behind */
-  int late;
-  int64_t tick;
-  ethd_space_trace trace;
-  ethd_status status;
-} mover;
-
-static void mover_open(mover *m, int late, ethd_vec3 at) {
-  m->setup.ability.delay = late * m->setup.period;
-  m->space = made(&m->setup);
-  m->late = late;
-  m->at = at;
-  m->v = (ethd_vec3){0, 0, 0};
-  m->tick = 0;
-  for (int i = 0; i <= LATE_MAX; i++) m->past[i] = at;
-}
-
-static ethd_vec3 real_place(const mover *m) { return m->past[m->late]; }
-
-static void mover_step(mover *m, ethd_vec3 finger, ethd_vec3 finger_v, const ethd_surface *near, uint32_t count) {
-  ethd_space_sense s = {.time_ns = (int64_t)(1e9 * m->setup.period) * m->tick++, .have = ETHD_SPACE_HAVE_FINGER};
-  ethd_space_command command;
-  ethd_vec3_put(m->at, s.x);
-  ethd_vec3_put(m->v, s.v);
-  ethd_vec3_put(finger, s.finger);
-  ethd_vec3_put(finger_v, s.finger_v);
-  m->status = ethd_space_step(m->space, &s, near, count, &command, &m->trace);
-  m->v = ethd_vec3_of(command.value);
-  m->at = ethd_vec3_add(m->at, ethd_vec3_scale(m->setup.period, m->v));
-  memmove(m->past + 1, m->past, sizeof m->past - sizeof *m->past);
-  m->past[0] = m->at;
-}
-
-static ethd_surface wall_at(ethd_vec3 x, ethd_vec3 n, double c, int32_t id) {
-  const double d = c - ethd_vec3_dot(n, x);
-  return (ethd_surface){.point = ethd_vec3_add(x, ethd_vec3_scale(d, n)), .n = n, .id = id, .material = -1};
-}
 
 /* Minimum-jerk reach (Flash and Hogan 1985): share of the way and its rate at the share s of the time. */
 static double reached(double s) { return s >= 1 ? 1 : s * s * s * (10 + s * (6 * s - 15)); }
@@ -378,47 +317,4 @@ TEST(test_refused_setups) {
   s.kind = ETHD_SPACE_FORCE;
   ck_assert_int_eq(ethd_space_post(space, &s, &error), ETHD_E_ARGUMENT);
   ethd_space_destroy(space);
-}
-
-/* Whatever comes in, a velocity command stays within speed, acceleration and workspace; after a fault it goes to zero
-   with the acceleration, and an acknowledgement lets it go on. */
-TEST(test_random_ticks) {
-  const char *stress = getenv("ETHD_STRESS");
-  const long ticks = stress ? 50000000 : 200000;
-  mover m = {.setup = ethd_space_setup_default()};
-  m.setup.speed = 0.8;
-  m.setup.acceleration = 12;
-  m.setup.x_min = m.setup.y_min = m.setup.z_min = -0.3;
-  m.setup.x_max = m.setup.y_max = m.setup.z_max = 0.3;
-  m.setup.reach = 0.4;
-  m.setup.gap = 0.005;
-  mover_open(&m, 0, (ethd_vec3){0, 0, 0});
-  long faults = 0, moved = 0;
-  for (long k = 0; k < ticks; k++) {
-    ethd_surface near[ETHD_SURFACES_MAX];
-    const uint32_t count = (uint32_t)between(0, k % 100 == 0 ? ETHD_SURFACES_MAX : 5);
-    for (uint32_t i = 0; i < count; i++) {
-      near[i] = wall_at(m.at, any_unit(), between(-0.2, 0.3), (int32_t)between(0, 3));
-      near[i].v = ethd_vec3_scale(between(0, 0.3), any_unit());
-    }
-    if (k % 997 == 0 && count) near[0].n.x += between(-1, 1);
-    if (k % 5000 == 0) {
-      ethd_space_transition(&m.setup, k % 10000 ? &ethd_transition_offset : &ethd_transition_approach);
-      ck_assert_int_ge(ethd_space_post(m.space, &m.setup, &error), ETHD_OK);
-    }
-    if (k % 300 == 0) ethd_space_acknowledge(m.space);
-    const ethd_vec3 was = m.v;
-    mover_step(&m, ethd_vec3_scale(between(0, 1), any_unit()), ethd_vec3_scale(between(0, 3), any_unit()), near, count);
-    ck_assert(ethd_vec3_norm(m.v) <= 0.8 * (1 + 1e-12));
-    const double change = ethd_vec3_norm(ethd_vec3_sub(m.v, was));
-    ck_assert(change <= 12e-3 * (1 + 1e-9) || m.status == ETHD_E_NOT_FINITE);
-    ck_assert(ethd_vec3_norm(m.at) <= 0.4 + 1e-9 && fabs(m.at.x) <= 0.3 + 1e-9 && fabs(m.at.y) <= 0.3 + 1e-9);
-    faults += m.status < 0;
-    moved += change > 0;
-    ethd_event event;
-    while (ethd_space_poll(m.space, &event) == ETHD_OK) {
-    }
-  }
-  ck_assert(faults > ticks / 100 && moved > ticks / 10);
-  ethd_space_destroy(m.space);
 }

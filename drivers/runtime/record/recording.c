@@ -15,14 +15,6 @@
 #include "text/text.h"
 
 #define ROOM 256 /* bytes kept in events.csv for a row about what can't be written */
-#define LETTER_double 'f'
-#define LETTER_int64_t 'i'
-#define SENSE_COLUMN(type, name, count, unit, brief) \
-  {#name, unit, count, offsetof(ethd_trace, sense.name), LETTER_##type},
-#define TRACE_COLUMN(type, name, count, unit, brief) {#name, unit, count, offsetof(ethd_trace, name), LETTER_##type},
-
-const ethd_column ethd_trace_columns[] = {ETHD_SENSE_FIELDS(SENSE_COLUMN)
-                                              ETHD_TRACE_FIELDS(TRACE_COLUMN){NULL, NULL, 0, 0, 0}};
 
 struct ethd_recording {
   ethd_npy *ticks;
