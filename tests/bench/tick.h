@@ -37,4 +37,7 @@ bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, size_t 
 void ethd__tick_cold(FILE *csv, int quick);
 void ethd__tick_live(FILE *csv, int quick);
 
+/* Prints what a tick in space costs beside an entry of the plane's, and judges it. */
+void ethd__tick_space(const bench_entry *plane, int quick);
+
 #endif
