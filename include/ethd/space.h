@@ -135,10 +135,10 @@ typedef struct ethd_space_command {
   X(turn_rate, "rad/s", 0, INFINITY, 6, "fastest turn of the normal that a plate is to face")                   \
   X(damping, "Ns/m", 1, 1e9, 1e4, "velocity commands: a force F of the laws is the velocity F / damping")       \
   X(speed, "m/s", 0, INFINITY, INFINITY, "limit of the speed: a faster effector is stopped, a command is cut")  \
-  X(acceleration, "m/s2", 0, INFINITY, INFINITY, "velocity commands: limit of their change, along n first")     \
+  X(acceleration, "m/s2", 0.1, INFINITY, INFINITY, "velocity commands: limit of their change, along n first")   \
   X(force, "N", 0, INFINITY, INFINITY, "force commands: limit")                                                 \
   X(force_rate, "N/s", 0, INFINITY, INFINITY, "force commands: limit of their change")                          \
-  X(x_min, "m", -INFINITY, INFINITY, -INFINITY, "workspace of the effector's point")                            \
+  X(x_min, "m", -INFINITY, INFINITY, -INFINITY, "workspace of the effector, x of the sense")                    \
   X(x_max, "m", -INFINITY, INFINITY, INFINITY, "")                                                              \
   X(y_min, "m", -INFINITY, INFINITY, -INFINITY, "")                                                             \
   X(y_max, "m", -INFINITY, INFINITY, INFINITY, "")                                                              \
@@ -150,7 +150,7 @@ typedef struct ethd_space_command {
   X(reach, "m", 0, INFINITY, INFINITY, "its radius")                                                            \
   X(energy, "J", 1e-9, INFINITY, INFINITY, "that a contact may give away before it is damped")                  \
   X(step_time, "s", 1e-9, INFINITY, INFINITY, "time budget of one step")                                        \
-  X(gap, "s", 1e-9, INFINITY, INFINITY, "longest time between two steps")                                       \
+  X(gap, "s", 1e-9, INFINITY, INFINITY, "longest time between two steps, by periods and by stamps")             \
   X(finger_age, "s", 1e-4, INFINITY, INFINITY, "age of the finger's reading at which tracking fades out")       \
   X(finger_lost, "s", 1e-4, INFINITY, INFINITY, "age of the finger's reading at which the effector is stopped") \
   X(clean_time, "s", 0, 1e6, 0, "time without a fault that an acknowledgement requires")                        \
@@ -257,8 +257,9 @@ ETHD_API double ethd_space_clean_time(const ethd_space *space) ETHD_RT;
    same way within 15 deg are one contact, the deepest. A contact goes on where a surface of its id, or one that faces
    the same way if no id fits, is nearest to its last point, within R_r. Row INPUT of the fault table: a number that
    isn't finite or possible (sense.h), a normal whose length isn't 1 within 1e-6, more than ETHD_SURFACES_MAX
-   surfaces, an unknown material. Returns as ethd_control_step does (ETHD_E_...). After a fault a velocity command goes
-   to zero with `acceleration`, a force command brakes as guard.h says; then `safe` is set. [rt] */
+   surfaces, an unknown material. Returns as ethd_control_step does (ETHD_E_...). After a row
+   whose reaction is STOP, a velocity command goes to zero with `acceleration`, however long that takes, and a force
+   command brakes as guard.h says; then `safe` is set. After ZERO the command is zero at once, with `safe`. [rt] */
 ETHD_API ethd_status ethd_space_step(ethd_space *space, const ethd_space_sense *sense, const ethd_surface *surfaces,
                                      uint32_t count, ethd_space_command *command, ethd_space_trace *trace) ETHD_RT;
 

@@ -206,5 +206,6 @@ void ethd__tick_run(ethd__tick *t) {
 void ethd__resume(const ethd__plan *plan, ethd__state *state) {
   ethd__core_resume(&plan->core, &state->core);
   state->guard.stopping = state->guard.stopped = 0;
+  state->guard.stop.begun = 0;
   state->guard.steep = 0;
 }

@@ -46,7 +46,7 @@ static double known_or(double value, double other) { return value >= 0 ? value :
 static ethd_status step(const double *p, void *block, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
   approach_state *s = block;
   const ethd_facts *f = c->facts;
-  const double able = f->acceleration > 0 ? f->acceleration : f->force / f->mass;
+  const double able = f->acceleration >= 0 ? f->acceleration : f->force / f->mass;
   const double a = p[EFFORT] * (able < 1e6 ? known_or(able, p[ACCELERATION]) : p[ACCELERATION]);
   const double late = known_or(f->delay, 0) + c->period;
   const double ahead = c->d_re - c->d_fr, gap = f->ring_radius - f->finger_radius;

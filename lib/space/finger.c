@@ -8,8 +8,8 @@ static bool is_possible(const double v[3], double most) {
   return fabs(v[0]) <= most && fabs(v[1]) <= most && fabs(v[2]) <= most;
 }
 
-/* Takes this tick's reading; returns whether it was used. A filter that still acquires the finger gates readings that
-   tell nothing of the tracker. */
+/* Takes this tick's reading; returns whether it was used. While the filter acquires the finger, readings that it gates
+   don't count as implausible. */
 static bool use(ethd__space_tick *t) {
   const ethd_space_sense *s = t->sense;
   ethd__space_state *state = t->state;

@@ -3,8 +3,9 @@
      velocity   asked -> fades -> bounds of contacts and workspace -> speed -> acceleration, along n first
      force      asked -> force -> fades -> rate, and force again
 
-   The bounds have the last word over the direction, so a fade can't drive the effector into a wall; the workspace's have
-   it over the contacts', so a wall that moves can't push the effector out. A velocity command stops with the acceleration; a force command stops by the guard's law (ethd/guard.h), with the mass of the ability. */
+   The contacts' bounds come after the fades, so a fade can't drive the effector into a wall. The workspace's bounds come
+   after the contacts', so a wall that moves can't push the effector out. A velocity command stops with the acceleration;
+   a force command stops by the guard's law (ethd/guard.h), with the mass of the ability. */
 #include "core/fade.h"
 #include "core/rows.h"
 #include "guard/parts.h"
@@ -61,11 +62,28 @@ static int32_t breach(const ethd__space_tick *t, const double *d, int count) {
 
 /* ---- velocity ---- */
 
-/* Goes from `from` towards `to` by at most `most`, first along the bounds' normals, in their order. */
-static ethd_vec3 towards(ethd_vec3 from, ethd_vec3 to, double most, const struct ethd__bound *bounds, int count) {
-  ethd_vec3 left = ethd_vec3_sub(to, from), own[3];
+/* Cuts u to a length by its part across the first `count` of these directions, which are perpendicular: the change along
+   them was needed. That part was within the length before and is only cut back to it, so u changes no more than before. */
+static ethd_vec3 cut_across(ethd_vec3 u, double most, const ethd_vec3 own[3], int count) {
+  ethd_vec3 along = {0, 0, 0};
+  if (ethd_vec3_norm(u) <= most) return u;
+  for (int i = 0; i < count; i++) along = ethd_vec3_add(along, ethd_vec3_scale(ethd_vec3_dot(u, own[i]), own[i]));
+  const double part = ethd_vec3_norm(along);
+  if (part >= most) return ethd_vec3_scale(most / part, along);
+  const ethd_vec3 across = ethd_vec3_sub(u, along);
+  const double left = sqrt((most - part) * (most + part)) * (1 - 1e-15);
+  return ethd_vec3_add(along, ethd_vec3_scale(left / ethd_vec3_norm(across), across));
+}
+
+/* Goes from `from` towards `to` by at most `most`, first along the normals of the bounds that `from` doesn't satisfy, in
+   their order; between two velocities that satisfy a bound there is none that doesn't. */
+static ethd_vec3 towards(const ethd__space_tick *t, ethd_vec3 to, const struct ethd__bound *bounds, int count) {
+  ethd_vec3 from = t->state->last, left = ethd_vec3_sub(to, from), own[3];
+  double most = t->plan->setup.acceleration * t->core.dt;
+  const ethd_vec3 start = from;
   int found = 0;
   for (int i = 0; i < count && found < 3; i++) {
+    if (!bounds[i].held && ethd_vec3_dot(bounds[i].n, start) <= bounds[i].speed) continue;
     ethd_vec3 e = bounds[i].n;
     for (int k = 0; k < found; k++) e = ethd_vec3_sub(e, ethd_vec3_scale(ethd_vec3_dot(e, own[k]), own[k]));
     const double length = ethd_vec3_norm(e);
@@ -79,14 +97,15 @@ static ethd_vec3 towards(ethd_vec3 from, ethd_vec3 to, double most, const struct
     found++;
   }
   const double rest = ethd_vec3_norm(left);
-  return ethd_vec3_add(from, rest > most ? ethd_vec3_scale(most / rest, left) : left);
+  return cut_across(ethd_vec3_add(from, rest > most ? ethd_vec3_scale(most / rest, left) : left), t->plan->setup.speed,
+                    own, found);
 }
 
 static ethd_vec3 limit_velocity(ethd__space_tick *t, ethd_vec3 asked, const double *d, const ethd_vec3 *n, int faces_) {
   const ethd_space_setup *s = &t->plan->setup;
   const ethd__touched *touched = &t->core.touched;
-  struct ethd__bound bounds[BOUNDS], first[BOUNDS];
-  int count = 0, firsts = 0;
+  struct ethd__bound bounds[BOUNDS];
+  int count = 0;
   for (int i = 0; i < faces_; i++) bounds[count++] = (struct ethd__bound){n[i], highest(t, d[i]), false};
   for (int i = 0; i < touched->bounds; i++) bounds[count++] = touched->bound[i];
   ethd_vec3 u = ethd__space_within(asked, bounds, count);
@@ -96,19 +115,17 @@ static ethd_vec3 limit_velocity(ethd__space_tick *t, ethd_vec3 asked, const doub
     u = ethd_vec3_scale(s->speed / speed, u);
     t->trace->guard |= ETHD_GUARD_TORQUE;
   }
-  const ethd_vec3 last = t->state->last;
-  if (ethd_vec3_norm(ethd_vec3_sub(u, last)) <= s->acceleration * t->core.dt) return u;
+  if (ethd_vec3_norm(ethd_vec3_sub(u, t->state->last)) <= s->acceleration * t->core.dt) return u;
   t->trace->guard |= ETHD_GUARD_RATE;
-  for (int i = 0; i < count; i++) /* of the faces only those that are braked for */
-    if (i >= faces_ || ethd_vec3_dot(bounds[i].n, last) > bounds[i].speed) first[firsts++] = bounds[i];
-  return towards(last, u, s->acceleration * t->core.dt, first, firsts);
+  return towards(t, u, bounds, count);
 }
 
 static ethd_vec3 stop_velocity(ethd__space_tick *t) {
   const ethd_vec3 zero = {0, 0, 0};
-  const ethd_vec3 u = towards(t->state->last, zero, t->plan->setup.acceleration * t->core.dt, NULL, 0);
-  if (u.x == 0 && u.y == 0 && u.z == 0 && t->state->stopping) t->state->stopped = 1;
-  return t->state->stopped ? zero : u;
+  const double most = t->plan->setup.acceleration * t->core.dt;
+  const bool there = ethd_vec3_norm(t->state->last) <= most;
+  if (there && t->state->stopping) t->state->stopped = 1;
+  return t->state->stopped || there ? zero : towards(t, zero, NULL, 0);
 }
 
 /* ---- force ---- */
@@ -163,13 +180,13 @@ void ethd__space_limit(ethd__space_tick *t) {
   ethd__space_state *state = t->state;
   ethd_vec3 asked = ethd_vec3_of(t->trace->asked), n[ETHD__FACES];
   double d[ETHD__FACES];
-  const int count = t->plan->has_box || t->plan->has_ball ? faces(t, t->core.x, d, n) : 0;
+  const int count = t->plan->has_box || t->plan->has_ball ? faces(t, ethd_vec3_of(t->sense->x), d, n) : 0;
   const bool by_velocity = t->plan->core.by_velocity;
   int32_t bits = breach(t, d, count);
   if (t->plan->core.latches) state->stopping |= bits;
   bits |= state->stopping & ETHD_GUARD_FAULT;
   t->trace->guard = bits;
-  if (t->core.soft) state->last = (ethd_vec3){0, 0, 0};
+  if (t->core.soft && !by_velocity) state->last = (ethd_vec3){0, 0, 0}; /* what moves must slow down first */
   if (bits || state->stopping) {
     ethd__fade_end(&state->core.fade);
     state->last = by_velocity ? stop_velocity(t) : stop_force(t);

@@ -9,6 +9,7 @@
 static void resume(const ethd__space_plan *plan, ethd__space_state *state) {
   ethd__core_resume(&plan->core, &state->core);
   state->stopping = state->stopped = 0;
+  state->stop.begun = 0;
 }
 
 static bool take_clear(ethd_space *space) {

@@ -234,7 +234,7 @@ TEST(test_seam) {
   for (int i = 0; i < 3000; i++) {
     const ethd_surface near[2] = {wall_at(m.at, n[i % 2], c[i % 2], i % 2),
                                   wall_at(m.at, n[1 - i % 2], c[1 - i % 2], 1 - i % 2)};
-    mover_step(&m, (ethd_vec3){0.3, 0.4, 0.05}, (ethd_vec3){0, 0, 0}, near, 2);
+    mover_step(&m, (ethd_vec3){0.4, 0.3, 0.05}, (ethd_vec3){0, 0, 0}, near, 2);
     ck_assert_int_eq(m.status, ETHD_OK);
   }
   const double x = c[0] - R;
@@ -263,6 +263,55 @@ TEST_LOOP(test_sliding, 0, 2) {
   ethd_space_counters(m.space, &counters);
   ck_assert_uint_eq(counters.contacts_lost, 0);
   ethd_space_destroy(m.space);
+}
+
+/* ---- limits ---- */
+
+/* A finger that turns back beside a wall takes the command over no limit, though the wall is near. */
+TEST(test_turn_at_the_limits) {
+  mover m = {.setup = ethd_space_setup_default()};
+  m.setup.speed = 1;
+  m.setup.acceleration = 2;
+  mover_open(&m, 0, (ethd_vec3){0, 0, 0});
+  ethd_vec3 finger = {0, 0, 0};
+  for (int i = 0; i < 3000; i++) {
+    const ethd_vec3 v = i < 1000 ? (ethd_vec3){1, 0, 0} : (ethd_vec3){0, -1, 0}, was = m.v;
+    const ethd_surface near = wall_at(m.at, (ethd_vec3){0, 1, 0}, 0.3, 0);
+    finger = ethd_vec3_add(finger, ethd_vec3_scale(1e-3, v));
+    mover_step(&m, finger, v, &near, 1);
+    ck_assert_int_eq(m.status, ETHD_OK);
+    ck_assert(ethd_vec3_norm(m.v) <= 1 + 1e-12 && ethd_vec3_norm(ethd_vec3_sub(m.v, was)) <= 2e-3 * (1 + 1e-9));
+  }
+  near_to(m.v, (ethd_vec3){0, -1, 0}, 0.1);
+  ethd_space_destroy(m.space);
+}
+
+/* A stop brakes with the acceleration, also when it is acknowledged meanwhile; what takes all power is zero at once. */
+TEST(test_stops) {
+  for (int k = 0; k < 3; k++) {
+    mover m = {.setup = ethd_space_setup_default()};
+    m.setup.acceleration = 2;
+    mover_open(&m, 0, (ethd_vec3){0, 0, 0});
+    for (int i = 0; i < 1000; i++) mover_step(&m, (ethd_vec3){1e-3 * i, 0, 0}, (ethd_vec3){1, 0, 0}, NULL, 0);
+    ck_assert(m.v.x > 0.9);
+    for (int i = 0; i < 1200; i++) {
+      const ethd_vec3 was = m.v;
+      ethd_space_sense s = {.time_ns = 1000000 * m.tick++, .have = ETHD_SPACE_HAVE_FINGER};
+      ethd_space_command command;
+      ethd_vec3_put(m.at, s.x);
+      ethd_vec3_put(m.at, s.finger);
+      ethd_vec3_put(m.v, s.v);
+      if (i == 0) s.faults = ETHD_FAULT_BIT(k == 2 ? ETHD_FAULT_EMERGENCY_STOP : ETHD_FAULT_APPLICATION);
+      if (k == 1 && i == 2) ethd_space_acknowledge(m.space);
+      ethd_space_step(m.space, &s, NULL, 0, &command, NULL);
+      m.v = ethd_vec3_of(command.value);
+      m.at = ethd_vec3_add(m.at, ethd_vec3_scale(1e-3, m.v));
+      if (k == 2) ck_assert(m.v.x == 0 && command.safe);
+      if (k < 2) ck_assert(fabs(m.v.x - was.x) <= 2e-3 * (1 + 1e-9) && command.safe == (k == 0 && m.v.x == 0));
+    }
+    ck_assert(m.v.x == 0 || k == 1);
+    ethd_space_destroy(m.space);
+  }
 }
 
 /* ---- what is wrong ---- */
