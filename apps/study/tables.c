@@ -51,13 +51,14 @@ static void sql_part(sqlite3_context *context, int count, sqlite3_value **value)
 
 static void sql_transition(sqlite3_context *context, int count, sqlite3_value **value) {
   (void)count;
-  sqlite3_result_text(context, protocol_of(context)->strategies.word[block_of(context, value).strategy], -1,
-                      SQLITE_STATIC);
+  const size_t strategy = block_of(context, value).strategy;
+  sqlite3_result_text(context, protocol_of(context)->strategies.word[strategy], -1, SQLITE_STATIC);
 }
 
 static void sql_speed(sqlite3_context *context, int count, sqlite3_value **value) {
   (void)count;
-  sqlite3_result_text(context, protocol_of(context)->speeds.word[block_of(context, value).speed], -1, SQLITE_STATIC);
+  const size_t speed = block_of(context, value).speed;
+  sqlite3_result_text(context, protocol_of(context)->speeds.word[speed], -1, SQLITE_STATIC);
 }
 
 /* gain(point, axis) */

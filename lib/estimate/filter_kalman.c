@@ -20,11 +20,13 @@ void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__filte
   p[AA] = w.aa * w.aa * p[AA] + ga * ga;
 }
 
+/* Of position and velocity: where their covariances with all three are. */
+static const int covariances[2][3] = {{XX, XV, XA}, {XV, VV, VA}};
+
 /* What one axis' gains and covariance become when its state `o` is measured: 0 is the position, 1 the velocity. `square`
    is the squared innovation of all axes together. */
 static inline bool measure(double p[6], int o, double square, double noise, double gate, double k[3]) {
-  static const int row[2][3] = {{XX, XV, XA}, {XV, VV, VA}};
-  const int *c = row[o], own = c[o], first = c[1 - o], last = c[2];
+  const int *c = covariances[o], own = c[o], first = c[1 - o], last = c[2];
   double variance = p[own] + noise * noise;
   if (!(square <= gate * gate * variance)) return false;
   for (int i = 0; i < 3; i++) k[i] = p[c[i]] / variance;

@@ -50,8 +50,8 @@ typedef struct ride {
 } ride;
 
 static ethd_contact contact_of(ride *x, double speed) {
-  return (ethd_contact){.point = {0.238, 0.25},
-                        .n = {-1, 0},
+  return (ethd_contact){.point = {0.238, 0.25, 0},
+                        .n = {-1, 0, 0},
                         .d_re = x->d,
                         .d_fe = x->finger + 0.0045,
                         .d_fr = x->finger,
