@@ -15,6 +15,9 @@
 #define OUTSIDE 1e-9 /* m: more than rounding takes an effector over its workspace's bound */
 #define BOUNDS (ETHD_CONTACTS_MAX + ETHD__FACES)
 
+/* Returns the time since the last command, s: also a tick without measurement gave one, zero. */
+static double since_last(const ethd__space_tick *t) { return (double)t->periods * t->plan->setup.period; }
+
 /* ---- the workspace ---- */
 
 /* Returns the highest speed from which the command can stop within d, m: as in law/transition_approach.c, with a command
@@ -79,7 +82,7 @@ static ethd_vec3 cut_across(ethd_vec3 u, double most, const ethd_vec3 own[3], in
    their order; between two velocities that satisfy a bound there is none that doesn't. */
 static ethd_vec3 towards(const ethd__space_tick *t, ethd_vec3 to, const struct ethd__bound *bounds, int count) {
   ethd_vec3 from = t->state->last, left = ethd_vec3_sub(to, from), own[3];
-  double most = t->plan->setup.acceleration * t->core.dt;
+  double most = t->plan->setup.acceleration * since_last(t);
   const ethd_vec3 start = from;
   int found = 0;
   for (int i = 0; i < count && found < 3; i++) {
@@ -115,14 +118,14 @@ static ethd_vec3 limit_velocity(ethd__space_tick *t, ethd_vec3 asked, const doub
     u = ethd_vec3_scale(s->speed / speed, u);
     t->trace->guard |= ETHD_GUARD_TORQUE;
   }
-  if (ethd_vec3_norm(ethd_vec3_sub(u, t->state->last)) <= s->acceleration * t->core.dt) return u;
+  if (ethd_vec3_norm(ethd_vec3_sub(u, t->state->last)) <= s->acceleration * since_last(t)) return u;
   t->trace->guard |= ETHD_GUARD_RATE;
   return towards(t, u, bounds, count);
 }
 
 static ethd_vec3 stop_velocity(ethd__space_tick *t) {
   const ethd_vec3 zero = {0, 0, 0};
-  const double most = t->plan->setup.acceleration * t->core.dt;
+  const double most = t->plan->setup.acceleration * since_last(t);
   const bool there = ethd_vec3_norm(t->state->last) <= most;
   if (there && t->state->stopping) t->state->stopped = 1;
   return t->state->stopped || there ? zero : towards(t, zero, NULL, 0);
@@ -143,7 +146,7 @@ static ethd_vec3 limit_force(ethd__space_tick *t, ethd_vec3 f) {
   const ethd_vec3 last = t->state->last;
   bool cut = false, steep = false;
   f = at_most(f, s->force, &cut);
-  f = ethd_vec3_add(last, at_most(ethd_vec3_sub(f, last), s->force_rate * t->core.dt, &steep));
+  f = ethd_vec3_add(last, at_most(ethd_vec3_sub(f, last), s->force_rate * since_last(t), &steep));
   if (steep) f = at_most(f, s->force, &cut);
   t->trace->guard |= (cut ? ETHD_GUARD_TORQUE : 0) | (steep ? ETHD_GUARD_RATE : 0);
   return f;
