@@ -28,12 +28,7 @@ typedef struct ethd__state {
   ethd__core core;
   ethd__place places[ETHD__PLACES];
   ethd_guard_state guard;
-  /* clock */
-  int64_t time_ns;       /* of the last tick */
-  int64_t clock_ns;      /* of the tick at which the present window of the clock's check began */
-  int64_t clock_periods; /* since then */
-  double clock_waits;    /* s for which the same sample has come again */
-  int64_t blind;         /* periods since the last tick with a possible measurement */
+  int64_t blind; /* periods since the last tick with a possible measurement */
   /* estimates */
   ethd_velocity_state velocity[2];
   int64_t velocity_ns; /* instant of their last sample */

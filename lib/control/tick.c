@@ -18,11 +18,11 @@
 #include "control/limit.h"
 #include "control/places.h"
 #include "control/swap.h"
+#include "core/clock.h"
 #include "core/rows.h"
 #include "core/swap.h"
 
-#define CLOCK_WINDOW 0.2 /* s */
-#define GAP_MAX 1000000  /* periods: a longer gap counts as this one, so that sums stay small */
+#define GAP_MAX 1000000 /* periods: a longer gap counts as this one, so that sums stay small */
 
 static int64_t at_most(int64_t periods) { return periods < GAP_MAX ? periods : GAP_MAX; }
 
@@ -62,37 +62,6 @@ static bool input_is_possible(const ethd_sense *s, double *which) {
   return !(s->have & ETHD__HAVE_BODIES) || bodies_are_possible(s);
 }
 
-static double since(int64_t now, int64_t then) { return 1e-9 * (double)(int64_t)((uint64_t)now - (uint64_t)then); }
-
-/* Returns true unless the device's clock stands still or has another rate: over a window it may differ from the loop's
-   periods by two gaps, since the age of a sample may change by one. A step that is late begins a new window, and so
-   does a device that says itself that its feedback is old. */
-static bool clock_runs(const ethd__tick *t, bool in_time) {
-  ethd__state *state = t->state;
-  const double period = t->plan->setup.period;
-  const bool told = t->sense->faults & ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD);
-  state->clock_periods += t->periods;
-  double expected = (double)state->clock_periods * period, passed = since(t->sense->time_ns, state->clock_ns);
-  bool good = state->core.counters.ticks < 2 || told || fabs(passed - expected) <= 2 * t->plan->setup.limits.gap;
-  if (good && in_time && !told && state->core.counters.ticks >= 2 && expected < CLOCK_WINDOW) return true;
-  state->clock_ns = t->sense->time_ns;
-  state->clock_periods = 0;
-  return good;
-}
-
-/* Returns true unless this step comes later than limits.gap after the last, by the loop's periods, or the device's
-   clock steps by more than that between two samples beside those periods. A sample that comes again counts with the
-   next new one. The first two ticks compare no clocks, since a bus's first sample may be older than the loop. */
-static bool clock_is_good(const ethd__tick *t) {
-  const double most = t->plan->setup.limits.gap, expected = (double)t->periods * t->plan->setup.period;
-  if (isinf(most)) return true;
-  ethd__state *state = t->state;
-  const double waited = expected + state->clock_waits, passed = since(t->sense->time_ns, state->time_ns);
-  state->clock_waits = passed == 0 ? waited : 0;
-  bool good = expected <= most && (state->core.counters.ticks < 2 || passed == 0 || fabs(passed - waited) <= most);
-  return clock_runs(t, expected <= most) && good;
-}
-
 static bool joints_are_good(const double joints[4], const double q[2]) {
   return q[0] >= joints[0] && q[0] <= joints[1] && q[1] >= joints[2] && q[1] <= joints[3];
 }
@@ -114,11 +83,10 @@ static void note_heat(ethd__tick *t) {
 
 /* Notes the rows of limits that most setups don't have. */
 static void note_rare_limits(ethd__tick *t, bool possible) {
-  if (!clock_is_good(t)) ethd__note_grave(&t->state->core, ETHD_FAULT_CLOCK);
+  ethd__clock_check(&t->state->core, t->sense->time_ns, t->periods, t->plan->setup.period, t->plan->setup.limits.gap);
   if (possible && !joints_are_good(t->plan->setup.limits.joints, t->sense->q))
     ethd__note_grave(&t->state->core, ETHD_FAULT_WORKSPACE);
   note_heat(t);
-  t->state->time_ns = t->sense->time_ns;
 }
 
 /* Returns whether the tick has a measurement. */

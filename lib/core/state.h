@@ -49,6 +49,16 @@ typedef struct ethd__met {
   double value[ETHD_FAULT_COUNT];
 } ethd__met;
 
+/* The device's clock, where the gap between two steps is limited (clock.h). */
+typedef struct ethd__clock {
+  uint64_t begun;  /* tick at which the check began */
+  uint64_t next;   /* tick at which it goes on */
+  int64_t now_ns;  /* stamp of the last tick */
+  int64_t from_ns; /* of the tick at which the present window began */
+  int64_t periods; /* since then */
+  double waits;    /* s for which the same sample has come again */
+} ethd__clock;
+
 /* What fades: the difference that a swap made, and the command after an acknowledged fault. */
 typedef struct ethd__fade {
   double delta[3]; /* old - new command at the swap */
@@ -65,6 +75,7 @@ typedef struct ethd__core {
   int64_t clean;           /* periods since the last tick that called for a stop */
   ethd__met met;           /* at this tick */
   ethd__fault_rows before; /* at the last */
+  ethd__clock clock;
   /* contacts */
   ethd__slot slots[ETHD_CONTACTS_MAX];
   double memory[ETHD_MEMORY];      /* of the transition law */

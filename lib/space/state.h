@@ -8,8 +8,7 @@
 
 typedef struct ethd__space_state {
   ethd__core core;
-  int64_t time_ns; /* of the last tick */
-  int64_t blind;   /* periods since the last tick with a possible measurement */
+  int64_t blind; /* periods since the last tick with a possible measurement */
   /* finger */
   ethd_filter_state filter;
   int64_t reading_ns;  /* stamp of the reading that was used last */

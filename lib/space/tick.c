@@ -1,5 +1,6 @@
 /* One tick in space, in the order of control/tick.c: what is already wrong, the finger, the contacts, tracking, what the
    laws ask for, the guard, and what the noted rows lead to. When the measurement is impossible the command is zero. */
+#include "core/clock.h"
 #include "core/rows.h"
 #include "core/swap.h"
 #include "space/state.h"
@@ -46,22 +47,13 @@ static bool input_is_possible(const ethd__space_tick *t, double *which) {
   return surfaces_are_possible(t);
 }
 
-/* Returns true unless this step comes later than `gap` after the last, by the loop's periods or by the stamps. */
-static bool clock_is_good(ethd__space_tick *t) {
-  const double most = t->plan->setup.gap, expected = (double)t->periods * t->plan->setup.period;
-  const double passed = 1e-9 * (double)(int64_t)((uint64_t)t->sense->time_ns - (uint64_t)t->state->time_ns);
-  t->state->time_ns = t->sense->time_ns;
-  if (isinf(most) || t->state->core.counters.ticks == 0) return true;
-  return expected <= most && fabs(passed - expected) <= most;
-}
-
 static bool note_what_is_wrong(ethd__space_tick *t) {
   ethd__core *core = &t->state->core;
   double which;
   ethd__rows_begin(core, t->sense->faults, t->sense->grave);
   const bool possible = input_is_possible(t, &which);
   if (!possible) ethd__note_value(core, ETHD_FAULT_INPUT, which);
-  if (!clock_is_good(t)) ethd__note_grave(core, ETHD_FAULT_CLOCK);
+  ethd__clock_check(core, t->sense->time_ns, t->periods, t->plan->setup.period, t->plan->setup.gap);
   if (possible && !core->fault && !(1e-9 * (double)t->sense->step_ns <= t->plan->setup.step_time))
     ethd__note_value(core, ETHD_FAULT_BUDGET, (double)t->sense->step_ns);
   return possible;
