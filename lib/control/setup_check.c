@@ -4,7 +4,7 @@
 
 #include "control/plan.h"
 #include "control/setup.h"
-#include "core/fence.h"
+#include "core/laws_check.h"
 #include "error.h"
 #include "fp_mode.h"
 #include "scene/scene.h"
@@ -14,12 +14,6 @@
     ethd_status status_ = (expression); \
     if (status_ < 0) return status_;    \
   } while (0)
-
-/* Puts the section into a failure's name. */
-static ethd_status within(const char *section, ethd_status status, ethd_error *error) {
-  if (status < 0) ethd__error_prefix(error, section);
-  return status;
-}
 
 /* Returns the most that a number may be: the finger must fit into the ring. */
 static double most_of(const ethd_setup *s, const ethd__setup_field *field) {
@@ -39,40 +33,10 @@ static ethd_status check_field(const ethd_setup *s, const ethd__setup_field *fie
 }
 
 static ethd_status check_fields(const ethd_setup *s, ethd_error *error) {
-  TRY(within("arm", ethd_arm_check(&s->arm, error), error));
+  TRY(ethd__within("arm", ethd_arm_check(&s->arm, error), error));
   for (const ethd__setup_field *f = ethd__setup_fields; f < ethd__setup_fields + ETHD__SETUP_FIELDS; f++)
-    TRY(within(f->key.section, check_field(s, f, error), error));
+    TRY(ethd__within(f->key.section, check_field(s, f, error), error));
   return ETHD_OK;
-}
-
-/* Asks the law's own check, which may leave the error alone: then the law's id says what is wrong. */
-static ethd_status ask_law(const ethd_law *law, const double *p, ethd_error *error) {
-  ethd_error own;
-  ethd__error(&own, ETHD_OK, law->id);
-  ethd_status status = law->check ? law->check(p, &own) : ETHD_OK;
-  if (status >= 0) return ETHD_OK;
-  own.status = status;
-  if (error) *error = own;
-  return status;
-}
-
-static ethd_status check_values(const ethd_law *law, const double *p, ethd_error *error) {
-  TRY(ethd_params_check(law->params, law->param_count, p, error));
-  return ask_law(law, p, error);
-}
-
-static ethd_status check_law(const char *kind, uint32_t kind_number, const ethd_law *law, const double *p,
-                             ethd_error *error) {
-  if (!law) return ethd__error(error, ETHD_E_ARGUMENT, kind);
-  TRY(within(kind, ethd_law_check(law, error), error));
-  if (law->kind != kind_number) return ethd__error(error, ETHD_E_ARGUMENT, kind);
-  return within(kind, check_values(law, p, error), error);
-}
-
-static ethd_status check_laws(const ethd_setup *s, ethd_error *error) {
-  TRY(check_law("tracking", ETHD_TRACKING, s->tracking ? &s->tracking->law : NULL, s->tracking_p, error));
-  TRY(check_law("contact", ETHD_CONTACT, s->contact ? &s->contact->law : NULL, s->contact_p, error));
-  return check_law("transition", ETHD_TRANSITION, s->transition ? &s->transition->law : NULL, s->transition_p, error);
 }
 
 /* Makes the contact law's parameters on one material: the setup's, replaced by the material's own where it has some. */
@@ -84,7 +48,7 @@ static ethd_status prepare_material(const ethd_setup *s, const ethd_material *m,
     if (k < 0) return ethd__error(error, ETHD_E_UNKNOWN, m->values[i].name);
     p[k] = m->values[i].value;
   }
-  return check_values(law, p, error);
+  return ethd__law_values_check(law, p, error);
 }
 
 static ethd_status prepare_materials(const ethd_setup *s, int place, ethd__plan *out, ethd_error *error) {
@@ -176,30 +140,26 @@ static void prepare_core(const ethd_setup *s, ethd__core_plan *out) {
   out->watches_energy = s->limits.energy < (double)INFINITY;
   out->latches = s->limits.latch;
   out->by_velocity = false;
-  out->tracking = s->tracking;
-  out->contact = s->contact;
-  out->transition = s->transition;
-  memcpy(out->tracking_p, s->tracking_p, sizeof out->tracking_p);
-  memcpy(out->contact_p, s->contact_p, sizeof out->contact_p);
-  memcpy(out->transition_p, s->transition_p, sizeof out->transition_p);
-  ethd__fence_prepare(out);
+  ethd__laws_plan(ETHD__LAWS(s), out);
 }
 
 ETHD__FP_APART static ethd_status prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
   TRY(ethd__setup_made(s, error));
   TRY(check_fields(s, error));
-  TRY(check_laws(s, error));
+  TRY(ethd__laws_check(ETHD__LAWS(s), error));
   TRY(check_tracking(s, error));
-  TRY(within("limits", ethd_limits_check(&s->limits, error), error));
+  TRY(ethd__within("limits", ethd_limits_check(&s->limits, error), error));
   out->setup = *s;
   prepare_core(s, &out->core);
   out->has_rare_limits = has_rare_limits(&s->limits);
   out->watches_finger = fmin(s->limits.finger_age, s->limits.finger_lost) < (double)INFINITY;
   out->period_ns = (int64_t)(1e9 * s->period + 0.5);
-  TRY(within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error), error));
-  TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error),
-             error));
-  TRY(within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error), error));
+  TRY(ethd__within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error),
+                   error));
+  TRY(ethd__within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error),
+                   error));
+  TRY(ethd__within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error),
+                   error));
   prepare_ahead(s, out);
   prepare_guard(s, out);
   prepare_lags(s, out);

@@ -1,7 +1,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/fence.h"
+#include "core/laws_check.h"
 #include "error.h"
 #include "fp_mode.h"
 #include "space/plan.h"
@@ -69,26 +69,6 @@ void ethd_space_setup_fill(ethd_space_setup *setup, uint32_t bytes) {
 
 /* ---- checks ---- */
 
-static ethd_status within(const char *section, ethd_status status, ethd_error *error) {
-  if (status < 0) ethd__error_prefix(error, section);
-  return status;
-}
-
-static ethd_status check_law(const char *kind, uint32_t number, const ethd_law *law, const double *p,
-                             ethd_error *error) {
-  if (!law) return ethd__error(error, ETHD_E_ARGUMENT, kind);
-  TRY(within(kind, ethd_law_check(law, error), error));
-  if (law->kind != number) return ethd__error(error, ETHD_E_ARGUMENT, kind);
-  TRY(within(kind, ethd_params_check(law->params, law->param_count, p, error), error));
-  ethd_error own;
-  ethd__error(&own, ETHD_OK, law->id);
-  const ethd_status status = law->check ? law->check(p, &own) : ETHD_OK;
-  if (status >= 0) return ETHD_OK;
-  own.status = status;
-  if (error) *error = own;
-  return within(kind, status, error);
-}
-
 static ethd_status check_numbers(const ethd_space_setup *s, ethd_error *error) {
   TRY(ethd_params_check(ethd_space_numbers, ETHD_SPACE_NUMBER_COUNT, &s->period, error));
   TRY(ethd__check_number(error, "finger_radius", s->finger_radius, 1e-4, s->radius));
@@ -107,16 +87,14 @@ static ethd_status check_numbers(const ethd_space_setup *s, ethd_error *error) {
 
 static ethd_status check_laws(const ethd_space_setup *s, ethd_error *error) {
   const bool by_velocity = s->kind == ETHD_SPACE_VELOCITY;
-  TRY(check_law("tracking", ETHD_TRACKING, s->tracking ? &s->tracking->law : NULL, s->tracking_p, error));
-  TRY(check_law("contact", ETHD_CONTACT, s->contact ? &s->contact->law : NULL, s->contact_p, error));
-  TRY(check_law("transition", ETHD_TRANSITION, s->transition ? &s->transition->law : NULL, s->transition_p, error));
+  TRY(ethd__laws_check(ETHD__LAWS(s), error));
   if (by_velocity ? !ETHD_TRACKING_HAS(s->tracking, velocity) : !ETHD_TRACKING_HAS(s->tracking, force))
     return ethd__error(error, ETHD_E_ARGUMENT,
                        by_velocity ? "tracking.law (it has no velocity)" : "tracking.law (it has no force)");
   if (s->materials > ETHD_MATERIALS_MAX)
     return ethd__refuse(error, ETHD_E_RANGE, "materials", (ethd__found){s->materials, 0, ETHD_MATERIALS_MAX});
   for (uint32_t i = 0; i < s->materials; i++)
-    TRY(within("material", check_law("contact", ETHD_CONTACT, &s->contact->law, s->material_p[i], error), error));
+    TRY(ethd__within("material", ethd__law_values_check(&s->contact->law, s->material_p[i], error), error));
   return ETHD_OK;
 }
 
@@ -140,13 +118,7 @@ static void prepare_core(const ethd_space_setup *s, ethd__core_plan *out) {
   out->by_velocity = s->kind == ETHD_SPACE_VELOCITY;
   out->brake = out->by_velocity ? 0 : damping;
   out->damping_max = fmin(DAMPING_MAX, damping);
-  out->tracking = s->tracking;
-  out->contact = s->contact;
-  out->transition = s->transition;
-  memcpy(out->tracking_p, s->tracking_p, sizeof out->tracking_p);
-  memcpy(out->contact_p, s->contact_p, sizeof out->contact_p);
-  memcpy(out->transition_p, s->transition_p, sizeof out->transition_p);
-  ethd__fence_prepare(out);
+  ethd__laws_plan(ETHD__LAWS(s), out);
 }
 
 ETHD__FP_APART static ethd_status prepare(const ethd_space_setup *s, ethd__space_plan *out, ethd_error *error) {
@@ -158,7 +130,8 @@ ETHD__FP_APART static ethd_status prepare(const ethd_space_setup *s, ethd__space
   if ((unsigned)s->effector > ETHD_EFFECTOR_PLATE) return ethd__error(error, ETHD_E_ARGUMENT, "effector");
   TRY(check_numbers(s, error));
   TRY(check_laws(s, error));
-  TRY(within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error), error));
+  TRY(ethd__within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error),
+                   error));
   out->setup = *s;
   prepare_core(s, &out->core);
   out->has_box =

@@ -6,22 +6,9 @@
 #include <string.h>
 
 #include "ethd/scene.h"
-#include "ethd/solids.h"
 #include "scene_objects.h"
 #include "solids/solids.h"
-#include "unit/suite.h"
-
-static ethd_solids *parse(const char *text) {
-  ethd_solids *solids;
-  ethd_error error = {.name = ""};
-  ethd_status status = ethd_solids_parse(text, strlen(text), &solids, &error);
-  ck_assert_msg(status == ETHD_OK, "line %d, %s: %s", error.line, error.name, ethd_status_sentence(status));
-  return solids;
-}
-
-static bool close_to(ethd_vec3 a, ethd_vec3 b) { return ethd_vec3_norm(ethd_vec3_sub(a, b)) < 1e-15; }
-
-static double depth(const ethd_surface *s, ethd_vec3 x) { return ethd_vec3_dot(s->n, ethd_vec3_sub(s->point, x)); }
+#include "unit/solids_rig.h"
 
 /* ---- what a query finds ---- */
 
