@@ -48,7 +48,7 @@ typedef struct ethd_cap_finger {
   double radius;    /* m: the fitted one; if it is known, rms of |p - c| over the rays used */
   double residual;  /* m: rms of the used rays' residuals */
   uint32_t used;    /* bit k: ray k was used */
-  bool gone;        /* the centre is over rim_margin beyond the rim: there is no finger in the cap */
+  bool gone;        /* the centre is over rim_margin beyond the rim: row FINGER_OUT of the fault table */
 } ethd_cap_finger;
 
 /* Checks a cap: 3 (seeks_radius: 4) to 32 rays, directions and `out` of length 1 within 1e-6, lengths of at most 1 m, 1e-4

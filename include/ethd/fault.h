@@ -85,7 +85,8 @@ typedef enum ethd_reaction {
   X(35, CLOCK, COUNTED, STOP, "1 tick", "the clock jumped by more than 5 ms")                             \
   X(36, SET_POINT, ZERO, ZERO, "the sequence", "the drive still holds an old set-point")                  \
   X(37, INPUT, ZERO, ZERO, "same tick", "a measurement isn't a possible number")                          \
-  X(38, LAW, ZERO, ZERO, "same tick", "a law reported a failure")
+  X(38, LAW, ZERO, ZERO, "same tick", "a law reported a failure")                                         \
+  X(39, FINGER_OUT, STOP, STOP, "1 frame", "the finger is out of the cap, beyond its rim")
 
 typedef enum ethd_fault {
   ETHD_FAULT_NONE = 0,

@@ -11,6 +11,10 @@
      ring, cap   X: its centre; R_r: its inner radius
      plate       X: the point at which the finger is to be, R_r before the plate's face; R_r - R_f is the stand-off
 
+   A cap's axis is the sense's `normal`, from its rim to its top: a finger whose centre is more than `rim` behind X along
+   it is out of the cap, row FINGER_OUT. This is known late where x is commanded, so who gives the readings sets the bit of
+   that row in `faults` itself, by ethd_cap_finger.gone (cap.h).
+
           X     R_r   |  d_re  |//////
           o-----------|<------>|//////     d_re = n.(P - X) - R_r
                  plate         P --> n
@@ -154,7 +158,8 @@ typedef struct ethd_space_command {
   X(finger_age, "s", 1e-4, INFINITY, INFINITY, "age of the finger's reading at which tracking fades out")       \
   X(finger_lost, "s", 1e-4, INFINITY, INFINITY, "age of the finger's reading at which the effector is stopped") \
   X(clean_time, "s", 0, 1e6, 0, "time without a fault that an acknowledgement requires")                        \
-  X(stop_time, "s", 1e-3, 10, 0.1, "longest stop, after which a force is removed")
+  X(stop_time, "s", 1e-3, 10, 0.1, "longest stop, after which a force is removed")                              \
+  X(rim, "m", 0, INFINITY, INFINITY, "cap: distance of finger and X along the axis at which the finger is out")
 
 #define ETHD_SPACE_COUNT(name, unit, min, max, def, brief) +1
 #define ETHD_SPACE_NUMBER_COUNT (0 ETHD_SPACE_NUMBERS(ETHD_SPACE_COUNT))

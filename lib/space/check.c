@@ -137,6 +137,7 @@ ETHD__FP_APART static ethd_status prepare(const ethd_space_setup *s, ethd__space
   out->has_box =
       fmax(fmax(s->x_min, s->y_min), s->z_min) > -INFINITE || fmin(fmin(s->x_max, s->y_max), s->z_max) < INFINITE;
   out->has_ball = s->reach < INFINITE;
+  out->watches_rim = s->effector == ETHD_EFFECTOR_CAP && s->rim < INFINITE;
   out->watches_finger = fmin(s->finger_age, s->finger_lost) < INFINITE;
   return ETHD_OK;
 }

@@ -1,5 +1,6 @@
 /* The finger in space: given as it is, or filtered from a tracker's readings; how old and how plausible they are. */
 #include "core/finger.h"
+#include "core/rows.h"
 #include "space/state.h"
 
 static double seconds(int64_t a, int64_t b) { return 1e-9 * (double)(int64_t)((uint64_t)b - (uint64_t)a); }
@@ -34,7 +35,7 @@ static bool use(ethd__space_tick *t) {
   return true;
 }
 
-void ethd__space_finger(ethd__space_tick *t) {
+static void find(ethd__space_tick *t) {
   const ethd_space_setup *setup = &t->plan->setup;
   ethd__space_state *state = t->state;
   t->core.finger = t->core.x; /* a finger that was never seen: there is nothing to follow */
@@ -52,4 +53,16 @@ void ethd__space_finger(ethd__space_tick *t) {
     state->absent = ethd__finger_age(&state->core, age, limits, state->absent, t->core.dt);
   }
   if (state->filter.started) ethd_filter_output3(&t->plan->filter, &state->filter, &t->core.finger, &t->core.finger_v);
+}
+
+/* Notes a finger that has come out of a cap over its rim. */
+static void watch_rim(ethd__space_tick *t) {
+  if (!(t->sense->have & ETHD_SPACE_HAVE_NORMAL)) return;
+  const double out = ethd_vec3_dot(ethd_vec3_of(t->sense->normal), ethd_vec3_sub(t->core.x, t->core.finger));
+  if (!(out <= t->plan->setup.rim)) ethd__note(&t->state->core, ETHD_FAULT_FINGER_OUT);
+}
+
+void ethd__space_finger(ethd__space_tick *t) {
+  find(t);
+  if (t->plan->watches_rim) watch_rim(t);
 }

@@ -13,6 +13,7 @@ typedef struct ethd__space_plan {
   ethd_filter filter;
   bool has_box, has_ball; /* the workspace has bounds */
   bool watches_finger;    /* finger_age or finger_lost is set */
+  bool watches_rim;       /* of a cap */
 } ethd__space_plan;
 
 /* Checks the setup and works out the plan; a failure leaves the plan undefined. [main] */

@@ -150,6 +150,7 @@ static const struct {
   const char *why;
 } elsewhere[] = {
     {3, "it needs threads: tests/threads/test_loop_rows.c, in the same words"},
+    {39, "it needs a cap: tests/behaviour/test_cap_tap.c"},
 };
 
 static bool is_tried(int row) {

@@ -34,18 +34,25 @@ void mover_open(mover *m, int late, ethd_vec3 at) {
   for (int i = 0; i <= LATE_MAX; i++) m->past[i] = at;
 }
 
-void mover_step(mover *m, ethd_vec3 finger, ethd_vec3 finger_v, const ethd_surface *near, uint32_t count) {
-  ethd_space_sense s = {.time_ns = (int64_t)(1e9 * m->setup.period) * m->tick++, .have = ETHD_SPACE_HAVE_FINGER};
-  ethd_space_command command;
-  ethd_vec3_put(m->at, s.x);
-  ethd_vec3_put(m->v, s.v);
-  ethd_vec3_put(finger, s.finger);
-  ethd_vec3_put(finger_v, s.finger_v);
-  m->status = ethd_space_step(m->space, &s, near, count, &command, &m->trace);
-  m->v = ethd_vec3_of(command.value);
+int64_t mover_now(const mover *m) { return (int64_t)(1e9 * m->setup.period) * m->tick; }
+
+void mover_sense(mover *m, ethd_space_sense *s, const ethd_surface *near, uint32_t count) {
+  s->time_ns = mover_now(m);
+  m->tick++;
+  ethd_vec3_put(m->at, s->x);
+  ethd_vec3_put(m->v, s->v);
+  m->status = ethd_space_step(m->space, s, near, count, &m->command, &m->trace);
+  m->v = ethd_vec3_of(m->command.value);
   m->at = ethd_vec3_add(m->at, ethd_vec3_scale(m->setup.period, m->v));
   memmove(m->past + 1, m->past, sizeof m->past - sizeof *m->past);
   m->past[0] = m->at;
+}
+
+void mover_step(mover *m, ethd_vec3 finger, ethd_vec3 finger_v, const ethd_surface *near, uint32_t count) {
+  ethd_space_sense s = {.have = ETHD_SPACE_HAVE_FINGER};
+  ethd_vec3_put(finger, s.finger);
+  ethd_vec3_put(finger_v, s.finger_v);
+  mover_sense(m, &s, near, count);
 }
 
 ethd_surface wall_at(ethd_vec3 x, ethd_vec3 n, double c, int32_t id) {

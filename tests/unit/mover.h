@@ -20,12 +20,17 @@ typedef struct mover {
   ethd_vec3 past[LATE_MAX + 1]; /* commanded places, the newest first: the device is `late` ticks behind */
   int late;
   int64_t tick;
+  ethd_space_command command;
   ethd_space_trace trace;
   ethd_status status;
 } mover;
 
 /* Makes a controller of m->setup for an effector that stands at a place. */
 void mover_open(mover *m, int late, ethd_vec3 at);
+
+/* The instant of the next tick, ns, and that tick with a sense that has all but its instant, x and v. */
+int64_t mover_now(const mover *m);
+void mover_sense(mover *m, ethd_space_sense *s, const ethd_surface *near, uint32_t count);
 
 /* One tick with a finger that is known. */
 void mover_step(mover *m, ethd_vec3 finger, ethd_vec3 finger_v, const ethd_surface *near, uint32_t count);
