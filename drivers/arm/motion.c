@@ -1,0 +1,139 @@
+#include "arm/motion.h"
+
+#include <math.h>
+#include <string.h>
+
+#define LEVER 0.2  /* m: by which a plate's turn, rad, counts beside its point's way, m */
+#define DRAWN 0.1  /* of a joint's speed: the posture draws no faster */
+#define NEAR 1e-14 /* m */
+#define CORRECTIONS 4
+#define ALMOST_NONE 1e-9 /* rad or m for each m along n: less doesn't bound */
+
+static uint32_t rows_of(const ethd__arm_table *table) { return table->turn > 0 ? 5 : 3; }
+
+/* Fills two unit vectors at right angles to `f` and to each other. */
+static void across_of(ethd_vec3 f, double out[2][3]) {
+  const double x = fabs(f.x), y = fabs(f.y), z = fabs(f.z);
+  const ethd_vec3 other = {x <= y && x <= z, y < x && y <= z, z < x && z < y};
+  const ethd_vec3 one = ethd_vec3_cross(f, other), first = ethd_vec3_scale(1 / ethd_vec3_norm(one), one);
+  ethd_vec3_put(first, out[0]);
+  ethd_vec3_put(ethd_vec3_cross(f, first), out[1]);
+}
+
+/* Works out what depends on q alone. */
+static void arrive(ethd__arm_motion *m) {
+  const uint32_t count = m->table->limits.count;
+  double j[ETHD__TASK_MAX][ETHD_JOINTS_MAX];
+  ethd__linkage_place(&m->table->linkage, m->q, &m->tool);
+  across_of(m->tool.facing, m->across);
+  for (uint32_t i = 0; i < count; i++) {
+    j[0][i] = m->tool.j[i].x;
+    j[1][i] = m->tool.j[i].y;
+    j[2][i] = m->tool.j[i].z;
+    for (int k = 0; k < 2; k++) j[3 + k][i] = LEVER * ethd_vec3_dot(ethd_vec3_of(m->across[k]), m->tool.axis[i]);
+  }
+  ethd__inverse_make(j, rows_of(m->table), count, m->table->singular, &m->inverse);
+}
+
+void ethd__arm_motion_start(const ethd__arm_table *table, const double *q, ethd__arm_motion *out) {
+  memset(out, 0, sizeof *out);
+  out->table = table;
+  memcpy(out->q, q ? q : table->posture, table->limits.count * sizeof *out->q);
+  arrive(out);
+}
+
+/* Takes q + T dq. */
+static void go(ethd__arm_motion *m, const double *dq) {
+  const double T = m->table->limits.period;
+  const ethd_vec3 was = m->tool.x;
+  for (uint32_t i = 0; i < m->table->limits.count; i++) {
+    m->dq[i] = dq[i];
+    m->q[i] += T * dq[i];
+  }
+  arrive(m);
+  m->v = ethd_vec3_scale(1 / T, ethd_vec3_sub(m->tool.x, was));
+}
+
+/* Fills the task: v, and a turn of the plate about the axis that takes it to `normal` the shortest way. */
+static void task_of(const ethd__arm_motion *m, ethd_vec3 v, const double *normal, double task[ETHD__TASK_MAX]) {
+  ethd_vec3 turn = {0, 0, 0};
+  ethd_vec3_put(v, task);
+  if (normal) {
+    const ethd_vec3 n = ethd_vec3_of(normal);
+    const double sine = ethd_vec3_norm(ethd_vec3_cross(m->tool.facing, n));
+    const double full = ethd_vec3_dot(m->tool.facing, n) < 0 && sine > NEAR ? 1 / sine : 1; /* beyond a right angle */
+    turn = ethd_vec3_scale(full * m->table->turn, ethd_vec3_cross(m->tool.facing, n));
+  }
+  for (int k = 0; k < 2; k++) task[3 + k] = LEVER * ethd_vec3_dot(ethd_vec3_of(m->across[k]), turn);
+}
+
+static void draw_to_posture(const ethd__arm_motion *m, double *dq) {
+  const ethd__arm_table *t = m->table;
+  double pull[ETHD_JOINTS_MAX];
+  for (uint32_t i = 0; i < t->limits.count; i++) {
+    const double most = DRAWN * t->limits.joint[i].speed;
+    pull[i] = fmax(-most, fmin(most, t->pull * (t->posture[i] - m->q[i])));
+  }
+  ethd__inverse_free(&m->inverse, pull);
+  for (uint32_t i = 0; i < t->limits.count; i++) dq[i] += pull[i];
+}
+
+/* Corrects dq until the point goes straight, by what J dq promises. */
+static void straighten(const ethd__arm_motion *m, double *dq) {
+  const ethd__arm_table *t = m->table;
+  const double T = t->limits.period;
+  const ethd_vec3 to = ethd_vec3_add(m->tool.x, ethd_vec3_scale(T, ethd__linkage_sum(m->tool.j, dq, t->limits.count)));
+  for (int k = 0; k < CORRECTIONS; k++) {
+    ethd__tool there;
+    double q[ETHD_JOINTS_MAX], task[ETHD__TASK_MAX] = {0}, more[ETHD_JOINTS_MAX];
+    for (uint32_t i = 0; i < t->limits.count; i++) q[i] = m->q[i] + T * dq[i];
+    ethd__linkage_place(&t->linkage, q, &there);
+    const ethd_vec3 off = ethd_vec3_sub(to, there.x);
+    if (ethd_vec3_norm(off) <= NEAR) return;
+    ethd_vec3_put(ethd_vec3_scale(1 / T, off), task);
+    ethd__inverse_solve(&m->inverse, task, more);
+    for (uint32_t i = 0; i < t->limits.count; i++) dq[i] += more[i];
+  }
+}
+
+ethd_joints_ruling ethd__arm_motion_step(ethd__arm_motion *m, ethd_vec3 v, const double *normal) {
+  double task[ETHD__TASK_MAX], dq[ETHD_JOINTS_MAX];
+  task_of(m, v, normal, task);
+  ethd__inverse_solve(&m->inverse, task, dq);
+  draw_to_posture(m, dq);
+  ethd_joints_ruling ruling = ethd_guard_joints(&m->table->limits, m->q, m->dq, dq);
+  straighten(m, dq);
+  const ethd_joints_ruling last = ethd_guard_joints(&m->table->limits, m->q, m->dq, dq);
+  if (ruling.joint < 0) ruling = last;
+  go(m, dq);
+  return ruling;
+}
+
+void ethd__arm_motion_stop(ethd__arm_motion *m) {
+  double dq[ETHD_JOINTS_MAX] = {0};
+  (void)ethd_guard_joints(&m->table->limits, m->q, m->dq, dq);
+  go(m, dq);
+}
+
+ethd_ability ethd__arm_motion_able(const ethd__arm_motion *m, ethd_vec3 n) {
+  const ethd__arm_table *t = m->table;
+  const double task[ETHD__TASK_MAX] = {n.x, n.y, n.z, 0, 0};
+  double dq[ETHD_JOINTS_MAX];
+  ethd_ability able = ethd_ability_unknown();
+  able.force = (double)INFINITY;
+  able.delay = t->servo.delay + 2 * t->servo.damping / t->servo.frequency;
+  ethd__inverse_solve(&m->inverse, task, dq);
+  /* near a singularity the point goes less far than n */
+  const double along = fmax(0, ethd_vec3_dot(n, ethd__linkage_sum(m->tool.j, dq, t->limits.count)));
+  able.speed = able.acceleration = along > ALMOST_NONE ? (double)INFINITY : 0;
+  for (uint32_t i = 0; i < t->limits.count; i++) {
+    const ethd_joint_limit *j = &t->limits.joint[i];
+    const double moves = fabs(dq[i]), lever = fabs(ethd_vec3_dot(n, m->tool.j[i]));
+    if (moves > ALMOST_NONE) {
+      able.speed = fmin(able.speed, along * j->speed / moves);
+      able.acceleration = fmin(able.acceleration, along * j->acceleration / moves);
+    }
+    if (lever > ALMOST_NONE) able.force = fmin(able.force, j->torque / lever);
+  }
+  return able;
+}

@@ -1,0 +1,41 @@
+/* From a commanded velocity of the tool's point to joint speeds that each joint's limits allow, tick by tick. It knows
+   nothing of how the arm follows: all places and speeds here are as commanded, and q += T dq.
+
+     task: v, and where a plate faces  --->  dq = J^+ task + free part of pull (posture - q)
+                                             ---> guard: each joint's place, speed, acceleration
+                                             ---> the point goes where v, as the guard left it, says: no drift
+                                             ---> guard
+
+   Where the arm turns while its point goes straight, J dq alone would leave the line by the square of the turn in each
+   period, some 1e-7 m. So the joint speeds are corrected until q + T dq has the point where it is to be, with the same
+   inverse (chord iteration, each time a thousandth of the error before). All [any, rt-safe]. */
+#ifndef ETHD__ARM_MOTION_H
+#define ETHD__ARM_MOTION_H
+
+#include "arm/inverse.h"
+#include "arm/table.h"
+#include "ethd/space.h"
+
+typedef struct ethd__arm_motion {
+  const ethd__arm_table *table;
+  double q[ETHD_JOINTS_MAX], dq[ETHD_JOINTS_MAX]; /* rad, rad/s of the last period */
+  ethd__tool tool;                                /* at q */
+  ethd_vec3 v;                                    /* m/s: how the point moved in the last period */
+  ethd__inverse inverse;                          /* at q: three rows, and two more where a plate is turned */
+  double across[2][3];                            /* unit vectors that these two turn about */
+} ethd__arm_motion;
+
+/* Puts the arm to rest at q, rad, within its limits; NULL: its posture. */
+void ethd__arm_motion_start(const ethd__arm_table *table, const double *q, ethd__arm_motion *out) ETHD_RT;
+
+/* Moves by one period towards v, m/s; a plate turns towards `normal`, a unit vector, or keeps where it faces: NULL. */
+ethd_joints_ruling ethd__arm_motion_step(ethd__arm_motion *m, ethd_vec3 v, const double *normal) ETHD_RT;
+
+/* Moves by one period, with each joint slowing down as quickly as it may. */
+void ethd__arm_motion_stop(ethd__arm_motion *m) ETHD_RT;
+
+/* Returns what the arm can do here along the unit vector n: its slowest joint says. `delay` is the dead time and the lag
+   of the second order. */
+ethd_ability ethd__arm_motion_able(const ethd__arm_motion *m, ethd_vec3 n) ETHD_RT;
+
+#endif
