@@ -22,6 +22,9 @@ void bench_fits(const char *folder, int quick);
 void bench_filters(const char *folder, int quick);
 void bench_velocity(const char *folder, int quick);
 
+/* Of the kinematics: an arm in space. */
+void bench_linkage(const char *folder, int quick);
+
 /* Returns the cost of two clock readings in a row, ns: the median of many. */
 double bench_clock_cost(void);
 

@@ -1,4 +1,4 @@
-/* Kinematics of the planar arm: forward kinematics, Jacobian, J^T f and J^-1 e at 1024 places. */
+/* Kinematics of the planar arm, before those of one in space: forward kinematics, Jacobian, J^T f and J^-1 e at 1024 places. */
 #include <math.h>
 #include <string.h>
 
@@ -133,6 +133,7 @@ static void run(const char *folder, int quick) {
     kdl.peer->destroy(kdl.peer_self);
   }
   bench_close();
+  bench_linkage(folder, quick);
 }
 
 const bench bench_kinematics = {"kinematics", run};

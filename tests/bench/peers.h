@@ -18,6 +18,17 @@ typedef struct ethd__peer_kinematics {
   void (*destroy)(void *self);
 } ethd__peer_kinematics;
 
+/* `peer_linkage`: an arm in space. A row of `rows` is a, alpha, d and the angle at 0 of a joint, as Denavit and Hartenberg
+   have them; the tool is the frame behind the last row. Each item of `in` is the angles, of `out` the tool's place, then
+   for each joint how the place moves, 3 numbers, and how the tool turns, 3 numbers. */
+enum { ETHD__PEER_JOINTS = 6, ETHD__PEER_LINKAGE = 3 + 6 * ETHD__PEER_JOINTS };
+typedef struct ethd__peer_linkage {
+  const char *name;
+  void *(*create)(const double (*rows)[4]);
+  void (*work)(void *self, const double (*in)[ETHD__PEER_JOINTS], double (*out)[ETHD__PEER_LINKAGE], size_t count);
+  void (*destroy)(void *self);
+} ethd__peer_linkage;
+
 /* `peer_filter`: a Kalman filter of constant acceleration with 3x3 matrices, alike for both axes, which does what the
    finger filter's `ca` does: it starts in the same way, has the same fading memory, and moves from sample to sample. An item of `in` is
    a tick's reading x y and its age in s, NaN without one; an item of `out` is x y now. A tick takes `period`. */

@@ -3,11 +3,14 @@
 // MuJoCo with steps of fixed length. Its contacts are soft constraints, which the pad's Hunt-Crossley isn't: so
 // its own are off and the plant's accelerations come in as forces on unit masses, by its passive callback. It
 // locates no events: touch is asked anew at each evaluation.
+#include <math.h>
 #include <mujoco/mujoco.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench/ode.h"
+#include "bench/peers.h"
 
 enum { HALF = ETHD__ODE_SIZE / 2 };
 
@@ -34,18 +37,23 @@ static void passive(const mjModel *m, mjData *d) {
   for (int i = 0; i < HALF; i++) d->qfrc_passive[i] += rate[HALF + i];
 }
 
-static void *create(const ethd__ode *ode, double step, mjtIntegrator integrator) {
+static mjModel *load(const char *text) {
   static mjVFS files;
   char message[256];
+  mj_defaultVFS(&files);
+  mj_addBufferVFS(&files, "model.xml", text, (int)strlen(text));
+  mjModel *loaded = mj_loadXML("model.xml", &files, message, sizeof message);
+  mj_deleteVFS(&files);
+  if (!loaded) abort();
+  return loaded;
+}
+
+static void *create(const ethd__ode *ode, double step, mjtIntegrator integrator) {
   mujoco_solver *s = calloc(1, sizeof *s);
   if (!s) return NULL;
   s->ode = *ode;
   s->step = step;
-  mj_defaultVFS(&files);
-  mj_addBufferVFS(&files, "model.xml", model, sizeof model - 1);
-  s->model = mj_loadXML("model.xml", &files, message, sizeof message);
-  mj_deleteVFS(&files);
-  if (!s->model) abort();
+  s->model = load(model);
   s->model->opt.integrator = integrator;
   s->data = mj_makeData(s->model);
   return s;
@@ -74,6 +82,50 @@ static void destroy(void *self) {
   mj_deleteModel(s->model);
   free(s);
 }
+
+/* ---- an arm in space: what a step does for place and Jacobian, and no more ---- */
+
+enum { JOINTS = ETHD__PEER_JOINTS };
+
+static void *create_linkage(const double (*rows)[4]) {
+  char text[4096] = "<mujoco><worldbody>", frame[200] = "";
+  size_t n = strlen(text);
+  mujoco_solver *s = calloc(1, sizeof *s);
+  if (!s) return NULL;
+  for (int i = 0; i < JOINTS; i++) {
+    n += (size_t)snprintf(text + n, sizeof text - n,
+                          "<body %s><joint axis='0 0 1'/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>", frame);
+    if (rows[i][3] != 0) abort();
+    snprintf(frame, sizeof frame, "pos='%.17g 0 %.17g' quat='%.17g %.17g 0 0'", rows[i][0], rows[i][2],
+             cos(rows[i][1] / 2), sin(rows[i][1] / 2));
+  }
+  n += (size_t)snprintf(text + n, sizeof text - n, "<site %s/>", frame);
+  for (int i = 0; i < JOINTS; i++) n += (size_t)snprintf(text + n, sizeof text - n, "</body>");
+  snprintf(text + n, sizeof text - n, "</worldbody></mujoco>");
+  s->model = load(text);
+  s->data = mj_makeData(s->model);
+  return s;
+}
+
+static void work_linkage(void *self, const double (*in)[JOINTS], double (*out)[ETHD__PEER_LINKAGE], size_t count) {
+  mujoco_solver *s = self;
+  for (size_t i = 0; i < count; i++) {
+    double moves[3 * JOINTS], turns[3 * JOINTS];
+    memcpy(s->data->qpos, in[i], sizeof in[i]);
+    mj_kinematics(s->model, s->data);
+    mj_comPos(s->model, s->data);
+    mj_jacSite(s->model, s->data, moves, turns, 0);
+    memcpy(out[i], s->data->site_xpos, 3 * sizeof **out);
+    for (int j = 0; j < JOINTS; j++)
+      for (int k = 0; k < 3; k++) {
+        out[i][3 + 6 * j + k] = moves[JOINTS * k + j];
+        out[i][6 + 6 * j + k] = turns[JOINTS * k + j];
+      }
+  }
+}
+
+extern const ethd__peer_linkage peer_linkage;
+const ethd__peer_linkage peer_linkage = {"MuJoCo 3.3.7", create_linkage, work_linkage, destroy};
 
 _Static_assert(mjVERSION_HEADER == 337, "the version is in the names");
 
