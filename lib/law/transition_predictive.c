@@ -20,6 +20,7 @@
 
    What the ring can do follows from the facts:  a = effort (F + f_c) / m.
    Approach: friction is made up for, and the ring is led, by X_f + lead n, so far that v* is over the finger's speed.
+   It begins v t_d + v^2/(2a) before the wall, and the way in which the ring can be led so far.
    Braking begins on brake_curve.h. The ring's acceleration is the curve's, plus rate (f(d) - v), less the disturbance
    w, with friction made up for. It is planned anew at each tick from the distance that is left and from what
    ring_observer.h says about the ring. The same loop then holds the ring, so beta is 0.
@@ -34,7 +35,7 @@ static const ethd_param params[COUNT] = {
     {"rate", "1/s", 10, 2000, 500, "rate at which the ring settles at the end, at most half a period's inverse"},
     {"aim", "m", 0, 0.005, 0.00008, "depth in the wall at which the ring is to stand"},
     {"margin", "m", 0, 0.1, 0.003, "clearance kept between finger and ring at the stop"},
-    {"range", "m", 0, 0.5, 0.015, "distance before the wall at which the approach begins"},
+    {"range", "m", 0, 0.5, 0.03, "farthest distance before the wall at which the approach begins"},
     {"memory", "1", 0, 0.99, 0.9, "share of the observer's residual that stays from tick to tick (b)"},
     {"learn", "1", 0, 1, 0, "weight of one braking in the learnt deceleration; 0: nothing is learnt"},
 };
@@ -42,7 +43,6 @@ static const ethd_param params[COUNT] = {
 #define RIM 0.3e-3     /* m: a finger nearer than this counts as at the rim; its estimate has this error */
 #define LEARN_END 5e-4 /* m: learning from a braking ends when the finger is nearer to the rim than this */
 #define STRAYED 2e-3   /* m: a ring that is farther from its prediction met another surface, or ticks are missing */
-#define APPROACH 0.035 /* s before the wall at which the approach begins, within `range` */
 #define SLOW 0.05      /* m/s: the approach fades in between a finger at rest and one of this speed */
 
 typedef struct predictive_state {
@@ -99,14 +99,19 @@ static bool meets_curve(const double *p, const predictive_state *s, const ethd_c
   return v > 0 && c->v_f > 0 && v >= ethd__brake_curve_speed(&m->curve, d);
 }
 
-/* Reduces the finger's lead over the ring, by a lead, to what leaves the ring room to stop. */
+/* Reduces the finger's lead over the ring, by a lead, to what leaves the ring room to stop: from so far before the wall
+   on that the ring has time to shift by it. The device would shift the ring by l within 2 sqrt(l / a) and stand beside
+   the finger again; tracking, which does it, is taken to need twice as long. */
 static void approach(const double *p, const predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m,
                      ethd_ruling *out) {
   const ethd_facts *f = c->facts;
-  double late = c->v_f * f->finger_age, gap = f->ring_radius - f->finger_radius;
-  double stop = c->v_f * c->v_f / (2 * m->curve.a) + c->v_f * (ethd__known(f->delay) + c->period) + p[MARGIN];
-  double lag = most(least(late, gap - stop), -gap / 2), share = within(c->v_f * (1 / SLOW), 0, 1);
+  const double v = c->v_f, a = m->curve.a;
   out->argument = c->d_fr;
+  if (!(v > 0)) return;
+  double late = v * f->finger_age, gap = f->ring_radius - f->finger_radius;
+  double stop = v * v / (2 * a) + v * (ethd__known(f->delay) + c->period) + p[MARGIN];
+  double lag = most(least(late, gap - stop), -gap / 2), share = within(v * (1 / SLOW), 0, 1);
+  if (s->ring.d > stop + v * 4 * sqrt((late - lag) / a)) return;
   out->feed = share * most(ethd__ring_friction(m, s->ring.v), 0);
   out->lead = share * (late - lag);
 }
@@ -177,8 +182,10 @@ static ethd_status step(const double *p, void *block, const ethd_contact *c, eth
   return ETHD_OK;
 }
 
-/* The approach needs some of tracking's time constants to lead the ring. */
-static double range(const double *p, double speed) ETHD_RT { return least(p[RANGE], APPROACH * speed); }
+static double range(const double *p, double speed) ETHD_RT {
+  (void)speed;
+  return p[RANGE];
+}
 
 static void adopt(const double *p, void *block, const ethd_past *past) ETHD_RT {
   ethd__offset_adopt(p, &((predictive_state *)block)->offset, past);

@@ -39,7 +39,7 @@ static const row rows[] = {
     {"predictive", "rate", 10, 2000, 500},
     {"predictive", "aim", 0, 0.005, 8e-05},
     {"predictive", "margin", 0, 0.1, 0.003},
-    {"predictive", "range", 0, 0.5, 0.015},
+    {"predictive", "range", 0, 0.5, 0.03},
     {"predictive", "memory", 0, 0.99, 0.9},
     {"predictive", "learn", 0, 1, 0},
     {"approach", "effort", 0.1, 1, 0.8},
