@@ -33,7 +33,7 @@ one() {
 }
 
 one words 3 drivers/servo/words.c 's/raw = raw == raw ? fmin(fmax(raw, min), max) : 0;/;/' $memory
-one npy_count 34 drivers/runtime/record/npy.c 's/if (!digits || end - p < 6 || /if (!digits || /' $memory
+one npy_count 34 drivers/runtime/record/npy_header.c 's/if (!digits || end - p < 6 || /if (!digits || /' $memory
 one decoder 48 drivers/proximity_ring/decoder.c 's/while (at < CODED)/while (at <= CODED)/' $memory
 one param 40 lib/param.c 's/inside = isgreaterequal(v, row->min)/inside = !(v < row->min)/' $memory
 # minutes

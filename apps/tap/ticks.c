@@ -13,8 +13,8 @@
 
 #define TRUTH "truth.npy"
 #define LETTER_double 'f'
-#define COLUMN(type, name, count, unit, brief) {#name, unit, count, offsetof(ethd_truth, name), LETTER_##type},
-const ethd_column ethd__truth_columns[] = {ETHD_TRUTH_FIELDS(COLUMN){NULL, NULL, 0, 0, 0}};
+#define COLUMN(type, name, count, unit, brief) {#name, unit, count, offsetof(ethd_truth, name), LETTER_##type, false},
+const ethd_column ethd__truth_columns[] = {ETHD_TRUTH_FIELDS(COLUMN){NULL, NULL, 0, 0, 0, false}};
 #undef COLUMN
 
 /* ---- writing ---- */

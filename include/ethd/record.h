@@ -19,6 +19,7 @@ typedef struct ethd_column {
   uint32_t count;  /* of numbers */
   uint32_t offset; /* bytes */
   char type;       /* 'f' double, 'i' int64_t */
+  bool newer;      /* added after there were files without it, which are read as if it were 0 */
 } ethd_column;
 
 /* The columns of an ethd_trace and of an ethd_space_trace (space.h), ended by a NULL name. */
@@ -40,7 +41,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_flush(ethd_npy *npy);
 /* Flushes, closes, and frees in any case. ETHD_E_FILE. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_close(ethd_npy *npy);
 
-/* Reads a whole file, which must have exactly these columns, into memory; the caller frees *rows.
+/* Reads a whole file into memory; the caller frees *rows. It must have exactly these columns, but may lack newer ones,
+   which are then 0.
    ETHD_E_FILE, ETHD_E_SYNTAX (another file, other columns, cut short), ETHD_E_MEMORY; message holds one line. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_read(const char *path, const ethd_column *columns, size_t row_bytes,
                                                    void **rows, size_t *count, char message[ETHD_MESSAGE_MAX]);
@@ -90,7 +92,7 @@ ETHD_API uint64_t ethd_recording_kept(const ethd_recording *recording);
    now or before. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_close(ethd_recording *recording, char message[ETHD_MESSAGE_MAX]);
 
-/* Replays a recording through the library and compares every field bit for bit. ETHD_OK: equal, and message says how
+/* Replays a recording through the library and compares every field that it has bit for bit. ETHD_OK: equal, and message says how
    many ticks. ETHD_E_DIFFERS: message names the first tick and field that differ. ETHD_E_UNFINISHED: the ticks that are
    there are equal, but the recording wasn't closed, so later ones may be lost; or ticks are missing in between, and
    what follows can't be replayed; or another thread or a handler of signals has set *stop (NULL: never). Any other

@@ -1,6 +1,6 @@
 /* The count in a .npy's header, of any bytes: nothing outside of the text is read, and a count has at most 18
    digits. */
-#include "../../drivers/runtime/record/npy.c"
+#include "../../drivers/runtime/record/npy_header.c"
 
 #define BYTES 32
 

@@ -117,11 +117,14 @@ static int read_calibration(const char *text, size_t length) {
 /* ---- recordings ---- */
 
 static int read_npy(const char *text, size_t length) {
-  static const ethd_column columns[] = {{"n", "1", 1, 0, 'i'}, {"x", "m", 16, 8, 'f'}, {NULL, NULL, 0, 0, 0}};
+  static const ethd_column columns[] = {{"n", "1", 1, 0, 'i', false},
+                                        {"x", "m", 16, 8, 'f', false},
+                                        {"y", "m", 1, 136, 'f', true},
+                                        {NULL, NULL, 0, 0, 0, false}};
   char message[ETHD_MESSAGE_MAX] = "";
-  size_t data = 0, count = 0;
-  ethd_status status = ethd__npy_parse(text, length, "x", columns, 136, &data, &count, message);
-  if (status == ETHD_OK && (data > length || count > (length - data) / 136)) return -1;
+  ethd__npy_shape shape = {.columns = columns};
+  ethd_status status = ethd__npy_parse(text, length, "x", &shape, message);
+  if (status == ETHD_OK && (shape.data > length || shape.count > (length - shape.data) / shape.row_bytes)) return -1;
   return judged(status, message);
 }
 

@@ -15,8 +15,10 @@ typedef struct row {
   double x[16], y;
 } row;
 
-static const ethd_column columns[] = {
-    {"n", "1", 1, 0, 'i'}, {"x", "m", 16, 8, 'f'}, {"y", "m", 1, 136, 'f'}, {NULL, NULL, 0, 0, 0}};
+static const ethd_column columns[] = {{"n", "1", 1, 0, 'i', false},
+                                      {"x", "m", 16, 8, 'f', false},
+                                      {"y", "m", 1, 136, 'f', false},
+                                      {NULL, NULL, 0, 0, 0, false}};
 static const char dict[] =
     "{'descr': [('n', '<i8'), ('x', '<f8', (16,)), ('y', '<f8')], 'fortran_order': False, 'shape': (";
 
@@ -144,8 +146,52 @@ TEST(test_bad_files) {
   check_refused(bad, n, "cut short: 5 rows of 999999999999999999 are there");
 }
 
+/* A file of the years before `early`, `mid` and `late`, and of those between, reads with zeros in their place. */
+TEST(test_newer_columns) {
+  typedef struct grown {
+    double early;
+    int64_t n;
+    double mid[2], x, late;
+  } grown;
+  static const ethd_column all[] = {{"early", "m", 1, 0, 'f', true}, {"n", "1", 1, 8, 'i', false},
+                                    {"mid", "m", 2, 16, 'f', true},  {"x", "m", 1, 32, 'f', false},
+                                    {"late", "m", 1, 40, 'f', true}, {NULL, NULL, 0, 0, 0, false}};
+  static const double first[] = {1.5, 0, 2.5, 3.5, 4.5, 5.5};
+  for (unsigned has = 0; has < 32; has++) {
+    ethd_column some[6];
+    double rows[12], *to = rows;
+    uint32_t n = 0, bytes = 0;
+    for (int i = 0; i < 5; i++)
+      if (has >> i & 1) some[n] = all[i], some[n].offset = bytes, bytes += 8 * all[i].count, n++;
+    some[n] = all[5];
+    if (!n) continue;
+    for (int at = 0; at < 2; at++)
+      for (int i = 0; i < 5; i++)
+        for (uint32_t k = 0; has >> i & 1 && k < all[i].count; k++) *to++ = at + first[all[i].offset / 8 + k];
+    for (int at = 0; at < 2 && has & 2; at++) memcpy(&rows[at * bytes / 8 + (has & 1)], &(int64_t){7 + at}, 8);
+    ethd_npy *npy;
+    grown *read;
+    size_t count;
+    ck_assert_int_eq(ethd_npy_create(path, some, bytes, &npy, message), ETHD_OK);
+    ck_assert_int_eq(ethd_npy_append(npy, rows, 2), ETHD_OK);
+    ck_assert_int_eq(ethd_npy_close(npy), ETHD_OK);
+    const ethd_status status = ethd_npy_read(path, all, sizeof(grown), (void **)&read, &count, message);
+    ck_assert_int_eq(status, (has & 10) == 10 ? ETHD_OK : ETHD_E_SYNTAX); /* n and x were always there */
+    for (size_t at = 0; !status && at < 2; at++) {
+      const double more = (double)at;
+      ck_assert_uint_eq(count, 2);
+      ck_assert_int_eq(read[at].n, 7 + (int)at);
+      ck_assert(read[at].x == 4.5 + more && read[at].early == (has & 1 ? 1.5 + more : 0));
+      ck_assert(read[at].late == (has & 16 ? 5.5 + more : 0));
+      ck_assert(read[at].mid[0] == (has & 4 ? 2.5 + more : 0) && read[at].mid[1] == (has & 4 ? 3.5 + more : 0));
+    }
+    free(read);
+  }
+}
+
 TEST(test_bad_columns) {
-  static const ethd_column gap[] = {{"n", "1", 1, 0, 'i'}, {"y", "m", 1, 136, 'f'}, {NULL, NULL, 0, 0, 0}};
+  static const ethd_column gap[] = {
+      {"n", "1", 1, 0, 'i', false}, {"y", "m", 1, 136, 'f', false}, {NULL, NULL, 0, 0, 0, false}};
   ethd_npy *npy;
   ck_assert_int_eq(ethd_npy_create(path, gap, sizeof(row), &npy, message), ETHD_E_ARGUMENT);
   ck_assert_ptr_null(npy);

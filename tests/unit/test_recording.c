@@ -148,6 +148,46 @@ TEST(test_replays_to_the_bit) {
   ck_assert_msg(strstr(message, "rec: stopped: 0 of 700 ticks are equal to the bit") != NULL, "%s", message);
 }
 
+/* Writes tick.npy anew as versions before `finger_noise` and `learnt` did. */
+static void make_older(void) {
+  ethd_column then[64];
+  char path[128], *row, *rows;
+  size_t n = 0, bytes = 0, count;
+  void *read;
+  ethd_npy *npy;
+  snprintf(path, sizeof path, "%s/tick.npy", recording_folder);
+  ck_assert_int_eq(ethd_npy_read(path, ethd_trace_columns, sizeof(ethd_trace), &read, &count, message), ETHD_OK);
+  row = rows = malloc(count * sizeof(ethd_trace));
+  ck_assert_ptr_nonnull(rows);
+  for (size_t i = 0; i < count; i++)
+    for (const ethd_column *c = ethd_trace_columns; c->name; c++) {
+      if (c->newer) continue;
+      memcpy(row, (const char *)read + i * sizeof(ethd_trace) + c->offset, 8 * c->count);
+      row += 8 * c->count;
+    }
+  for (const ethd_column *c = ethd_trace_columns; c->name; c++) {
+    ck_assert(c->newer || (strcmp(c->name, "finger_noise") && strcmp(c->name, "learnt")));
+    if (c->newer) continue;
+    then[n] = *c;
+    then[n++].offset = (uint32_t)bytes;
+    bytes += 8 * c->count;
+  }
+  then[n].name = NULL;
+  ck_assert_int_eq(ethd_npy_create(path, then, bytes, &npy, message), ETHD_OK);
+  ck_assert_int_eq(ethd_npy_append(npy, rows, count), ETHD_OK);
+  ck_assert_int_eq(ethd_npy_close(npy), ETHD_OK);
+  free(rows);
+  free(read);
+}
+
+/* Columns that versions have added can't be asked for in what earlier ones recorded. */
+TEST(test_older_recording) {
+  record();
+  make_older();
+  ck_assert_msg(ethd_recording_verify(recording_folder, true, NULL, message) == ETHD_OK, "%s", message);
+  ck_assert_msg(strstr(message, "rec: 700 ticks, equal to the bit") != NULL, "%s", message);
+}
+
 static char *read_text(const char *name) {
   char path[256], *text;
   size_t length;

@@ -9,16 +9,11 @@
 #include "text/file.h"
 #include "text/text.h"
 
-/* NumPy's format 1.0: "\x93NUMPY" 1 0, u16 length, a Python dict padded with spaces and ended by a
-   newline so that data starts at a multiple of 64. The padding has room for a count of COUNT_ROOM
-   digits. */
-#define MAGIC "\x93NUMPY\x01\x00"
-#define PREFIX 10u
-#define COUNT_ROOM 20u
+#define PREFIX ETHD__NPY_PREFIX
+#define COUNT_ROOM 20u /* digits of a count for which the header's padding has room */
 #define HEADER_MAX 65536u
 #define BUFFER_ROWS 256u
 #define BYTES_MAX ((size_t)16 << 30)
-#define ENDIAN (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? '<' : '>')
 
 struct ethd_npy {
   int fd;
@@ -29,24 +24,6 @@ struct ethd_npy {
   int reason;     /* errno of the write that failed; 0 when none did */
   char *header, *buffer;
 };
-
-/* ---- header ---- */
-
-/* Writes {'descr': [('a', '<f8'), ('b', '<i8', (2,))], 'fortran_order': False, 'shape': ( */
-static size_t write_dict(const ethd_column *columns, char *out, size_t room) {
-  FILE *file = fmemopen(out, room, "w");
-  if (!file) return 0;
-  fputs("{'descr': [", file);
-  for (const ethd_column *c = columns; c->name; c++) {
-    fprintf(file, "%s('%s', '%c%c8'", c == columns ? "" : ", ", c->name, ENDIAN, c->type);
-    if (c->count != 1) fprintf(file, ", (%u,)", c->count);
-    fputc(')', file);
-  }
-  fputs("], 'fortran_order': False, 'shape': (", file);
-  long length = ftell(file);
-  bool failed = ferror(file) || length + COUNT_ROOM + 8 > (long)room;
-  return fclose(file) == 0 && !failed ? (size_t)length : 0;
-}
 
 static bool dense(const ethd_column *columns, size_t row_bytes) {
   size_t at = 0;
@@ -75,9 +52,10 @@ static bool write_at(int fd, const char *bytes, size_t length, uint64_t offset) 
 }
 
 static bool start_header(ethd_npy *npy, const ethd_column *columns) {
-  size_t dict = write_dict(columns, npy->header + PREFIX, HEADER_MAX - PREFIX), total = padded(dict);
+  size_t dict = ethd__npy_dict(columns, npy->header + PREFIX, HEADER_MAX - PREFIX - COUNT_ROOM - 8);
+  size_t total = padded(dict);
   if (!dict || total - PREFIX > 65535) return false;
-  memcpy(npy->header, MAGIC, 8);
+  memcpy(npy->header, ETHD__NPY_MAGIC, sizeof ETHD__NPY_MAGIC - 1);
   npy->header[8] = (char)((total - PREFIX) & 255);
   npy->header[9] = (char)((total - PREFIX) >> 8);
   npy->shape = PREFIX + dict;
@@ -175,47 +153,9 @@ ethd_status ethd_npy_close(ethd_npy *npy) {
 
 /* ---- reading ---- */
 
-/* Reads "12,), }", spaces and a newline; returns false if there is anything else. */
-static bool read_count(const char *p, const char *end, size_t *count) {
-  size_t value = 0, digits = 0;
-  for (; p < end && *p >= '0' && *p <= '9' && digits < 18; p++, digits++) value = value * 10 + (size_t)(*p - '0');
-  if (!digits || end - p < 6 || memcmp(p, ",), }", 5) != 0) return false;
-  for (p += 5; p < end - 1; p++)
-    if (*p != ' ') return false;
-  *count = value;
-  return *p == '\n';
-}
-
-static ethd_status read_header(const char *text, size_t length, const char *path, const ethd_column *columns,
-                               size_t *data, size_t *count, char message[ETHD_MESSAGE_MAX]) {
-  if (length < PREFIX || memcmp(text, MAGIC, 8) != 0)
-    return ethd__say(message, ETHD_E_SYNTAX, "%s: no NumPy file of version 1.0", path);
-  size_t header = (unsigned char)text[8] | (size_t)(unsigned char)text[9] << 8;
-  if (length < PREFIX + header) return ethd__say(message, ETHD_E_SYNTAX, "%s: cut short within its header", path);
-  char *dict = malloc(HEADER_MAX);
-  size_t n = dict ? write_dict(columns, dict, HEADER_MAX) : 0;
-  bool same = n && n <= header && memcmp(text + PREFIX, dict, n) == 0;
-  free(dict);
-  if (!n) return ethd__no_memory(message, path);
-  if (!same) return ethd__say(message, ETHD_E_SYNTAX, "%s: other columns than those of this version of libethd", path);
-  if (!read_count(text + PREFIX + n, text + PREFIX + header, count))
-    return ethd__say(message, ETHD_E_SYNTAX, "%s: its header's shape isn't one count of rows", path);
-  *data = PREFIX + header;
-  return ETHD_OK;
-}
-
-/* Rows after the header's count were being written when the writer ended, so they don't count. */
-ethd_status ethd__npy_parse(const char *text, size_t length, const char *path, const ethd_column *columns,
-                            size_t row_bytes, size_t *data, size_t *count, char message[ETHD_MESSAGE_MAX]) {
-  ethd_status status = read_header(text, length, path, columns, data, count, message);
-  if (status || *count <= (length - *data) / row_bytes) return status;
-  return ethd__say(message, ETHD_E_SYNTAX, "%s: cut short: %zu rows of %zu are there", path,
-                   (length - *data) / row_bytes, *count);
-}
-
 /* Takes memory for the rows after the header, and what is on the disk, have said how many there are. */
 static ethd_status read_rows(ethd__npy_reader *reader, char **out, char *message) {
-  const size_t n = reader->row_bytes, bytes = reader->count * n;
+  const size_t n = reader->row_bytes, bytes = reader->shape.count * n;
   const void *row;
   ethd_status status = ETHD_OK;
   if (bytes > BYTES_MAX)
@@ -223,7 +163,7 @@ static ethd_status read_rows(ethd__npy_reader *reader, char **out, char *message
                      BYTES_MAX);
   char *to = *out = malloc(bytes + 1);
   if (!to) return ethd__no_memory(message, reader->path);
-  for (; reader->next < reader->count && !(status = ethd__npy_reader_next(reader, &row, message)); to += n)
+  for (; reader->next < reader->shape.count && !(status = ethd__npy_reader_next(reader, &row, message)); to += n)
     memcpy(to, row, n);
   return status;
 }
@@ -242,7 +182,7 @@ ethd_status ethd_npy_read(const char *path, const ethd_column *columns, size_t r
     free(bytes);
   } else {
     *rows = bytes;
-    *count = reader.count;
+    *count = reader.shape.count;
   }
   ethd__npy_reader_close(&reader);
   return status;

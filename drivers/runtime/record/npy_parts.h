@@ -4,9 +4,23 @@
 
 #include "ethd/record.h"
 
-/* Finds where the rows start in `text` and how many count; messages call the file `path`. [any] */
-ETHD_MUST_CHECK ethd_status ethd__npy_parse(const char *text, size_t length, const char *path,
-                                            const ethd_column *columns, size_t row_bytes, size_t *data, size_t *count,
+#define ETHD__NPY_MAGIC "\x93NUMPY\x01\x00"
+#define ETHD__NPY_PREFIX ((size_t)10) /* bytes before the dict */
+
+/* Where rows are in a file, and which columns they have. */
+typedef struct ethd__npy_shape {
+  const ethd_column *columns; /* the caller's table */
+  size_t data, count;         /* where the first row is, and how many count */
+  size_t row_bytes;           /* of the file */
+  uint64_t lacks;             /* bit i: the file lacks the table's column i of those that are newer */
+} ethd__npy_shape;
+
+/* Writes the dict up to the count, and returns its length; 0: no room. [any] */
+size_t ethd__npy_dict(const ethd_column *columns, char *out, size_t room);
+
+/* Reads the header in `text` of a file of `length` bytes, whose columns are shape->columns but for newer ones that it
+   may lack; messages call the file `path`. [any] */
+ETHD_MUST_CHECK ethd_status ethd__npy_parse(const char *text, size_t length, const char *path, ethd__npy_shape *shape,
                                             char message[ETHD_MESSAGE_MAX]);
 
 /* Does what ethd_npy_create does in an empty file, which is closed with it or if this fails. [main] */
@@ -23,18 +37,23 @@ uint64_t ethd__npy_rows(const ethd_npy *npy);
 typedef struct ethd__npy_reader {
   const char *path; /* the caller's, which outlives it; NULL: it isn't open */
   int fd;
-  size_t row_bytes, data; /* data: where the first row is */
-  size_t count, next;     /* rows in the file, and how many have been given */
-  char *piece;
+  ethd__npy_shape shape;
+  size_t row_bytes; /* of a row as it is given */
+  size_t next;      /* how many rows have been given */
+  char *piece, *row;
 } ethd__npy_reader;
 
 /* Opens a file as ethd_npy_read does; the file must be a regular one. [main] */
 ETHD_MUST_CHECK ethd_status ethd__npy_reader_open(const char *path, const ethd_column *columns, size_t row_bytes,
                                                   ethd__npy_reader *out, char message[ETHD_MESSAGE_MAX]);
 
-/* Gives the next row, which is valid until the next call; ETHD_STATUS_EMPTY after the last. [main] */
+/* Gives the next row, which is valid until the next call, with zeros where the file lacks a column; ETHD_STATUS_EMPTY
+   after the last. [main] */
 ETHD_MUST_CHECK ethd_status ethd__npy_reader_next(ethd__npy_reader *reader, const void **row,
                                                   char message[ETHD_MESSAGE_MAX]);
+
+/* Returns true if the file lacks the table's column. [any] */
+bool ethd__npy_lacks(const ethd__npy_shape *shape, const ethd_column *column);
 void ethd__npy_reader_close(ethd__npy_reader *reader);
 
 #endif

@@ -182,7 +182,7 @@ static ethd_status compare(const verification *r, size_t row, const ethd_trace *
   const unsigned char *a = (const unsigned char *)recorded, *b = (const unsigned char *)replayed;
   char was[32], is[32], index[16] = "";
   for (const ethd_column *c = ethd_trace_columns; c->name; c++)
-    for (uint32_t i = 0; i < c->count; i++) {
+    for (uint32_t i = 0; i < c->count && !ethd__npy_lacks(&r->rows.shape, c); i++) {
       size_t at = c->offset + i * (size_t)8;
       if (same(c, a + at, b + at)) continue;
       if (c->count > 1) snprintf(index, sizeof index, "[%u]", i);
@@ -200,29 +200,29 @@ static ethd_status judge_end(const verification *r) {
   if (!last || strcmp(last->kind, "end") != 0)
     return ethd__say(r->message, ETHD_E_UNFINISHED,
                      "%s: %zu tick%s, equal to the bit, but the recording was never closed: later ones may be lost",
-                     r->folder, r->rows.count, ethd__s(r->rows.count));
-  if (last->row != r->rows.count)
+                     r->folder, r->rows.shape.count, ethd__s(r->rows.shape.count));
+  if (last->row != r->rows.shape.count)
     return ethd__say(r->message, ETHD_E_DIFFERS, "%s:%zu: end: row: found %" PRIu64 ", but there %s %zu tick%s",
-                     r->events_path, last->line, last->row, r->rows.count == 1 ? "is" : "are", r->rows.count,
-                     ethd__s(r->rows.count));
-  return ethd__say(r->message, ETHD_OK, "%s: %zu tick%s, equal to the bit", r->folder, r->rows.count,
-                   ethd__s(r->rows.count));
+                     r->events_path, last->line, last->row, r->rows.shape.count == 1 ? "is" : "are", r->rows.shape.count,
+                     ethd__s(r->rows.shape.count));
+  return ethd__say(r->message, ETHD_OK, "%s: %zu tick%s, equal to the bit", r->folder, r->rows.shape.count,
+                   ethd__s(r->rows.shape.count));
 }
 
 /* Refuses to go on at a tick before which others are missing, with what the controller learned in them. */
 static ethd_status unreplayable(const verification *r, size_t row) {
   return ethd__say(r->message, ETHD_E_UNFINISHED,
                    "%s: %zu of %zu ticks are equal to the bit, the rest can't be replayed: %s (%s:%zu)", r->folder, row,
-                   r->rows.count, r->missing->detail, ETHD_RECORDING_EVENTS, r->missing->line);
+                   r->rows.shape.count, r->missing->detail, ETHD_RECORDING_EVENTS, r->missing->line);
 }
 
 static ethd_status stopped(const verification *r, size_t row) {
   return ethd__say(r->message, ETHD_E_UNFINISHED, "%s: stopped: %zu of %zu ticks are equal to the bit", r->folder, row,
-                   r->rows.count);
+                   r->rows.shape.count);
 }
 
 static ethd_status run(verification *r, const volatile int *stop) {
-  for (size_t row = 0; row < r->rows.count; row++) {
+  for (size_t row = 0; row < r->rows.shape.count; row++) {
     if (stop && *stop) return stopped(r, row);
     ethd_trace trace;
     ethd_command command;
