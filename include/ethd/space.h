@@ -71,7 +71,8 @@ enum {
   X(double, reading_v_noise, 1, "m/s", "sd of its velocity, each axis")                           \
   X(double, ability, 6, "m/s, m/s2, s, kg, N, N", "along the nearest surface's n; NaN: not known")
 
-#define ETHD_NEAR_MAX 16 /* surfaces within range that a tick looks at, the deepest */
+#define ETHD_NEAR_MAX 16       /* surfaces within range that a tick looks at, the deepest */
+#define ETHD_NEAR_REFUSED (-1) /* `near` of a tick that refused its surfaces (row INPUT) */
 
 #define ETHD_SPACE_TRACE_FIELDS(X)                                                                     \
   X(int64_t, tick, 1, "1", "steps since create or reset")                                              \
@@ -96,7 +97,7 @@ enum {
   X(double, command, 3, "N, m/s", "command")                                                           \
   X(double, facing, 3, "1", "normal that the plate is told to face")                                   \
   X(double, learnt, 4, "1", "the transition law's memory, where it looks ahead")                       \
-  X(int64_t, near, 1, "1", "surfaces within range")                                                    \
+  X(int64_t, near, 1, "1", "surfaces within range, ETHD_NEAR_REFUSED: refused")                        \
   X(double, near_point, 48, "m", "their points, the deepest first")                                    \
   X(double, near_n, 48, "1", "their normals")                                                          \
   X(double, near_v, 48, "m/s", "their velocities")                                                     \
@@ -112,8 +113,8 @@ typedef struct ethd_space_sense {
   ETHD_SPACE_SENSE_FIELDS(ETHD_FIELD)
 } ethd_space_sense;
 
-/* One whole tick: a step with `sense` and the `near` surfaces gives the other fields to the bit, but for `overflow`, and
-   where surfaces were refused (row INPUT). record.h has its columns. */
+/* One whole tick: a step with `sense` and the `near` surfaces, or an impossible one if they were refused, gives the other
+   fields to the bit, but for `overflow`. record.h has its columns. */
 typedef struct ethd_space_trace {
   ethd_space_sense sense;
   ETHD_SPACE_TRACE_FIELDS(ETHD_FIELD)
@@ -226,6 +227,27 @@ ETHD_API void ethd_space_transition(ethd_space_setup *setup, const ethd_transiti
    kind, or without an entry for the setup's kind), ETHD_E_SIZE (compiled with other headers), ETHD_E_UNKNOWN (filter),
    and the statuses of ethd_law_check. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_check(const ethd_space_setup *setup, ethd_error *error);
+
+/* ---- a setup by names, as a configuration has them ---- */
+
+#define ETHD_SPACE_PARTS 4
+/* What is chosen by its id: finger_filter, tracking, contact, transition; offsets are those in ethd_space_setup. */
+ETHD_API extern const ethd_setup_part ethd_space_parts[ETHD_SPACE_PARTS];
+
+/* As ethd_setup_part_of, ethd_setup_chosen and ethd_setup_choose, with their errors (ETHD_E_...). [any] */
+ETHD_API const ethd_setup_part *ethd_space_part_of(const char *section);
+ETHD_API ethd_method ethd_space_chosen(const ethd_space_setup *setup, const ethd_setup_part *part);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_choose(ethd_space_setup *setup, const char *section, const char *id,
+                                                       const ethd_law *const *laws, ethd_error *error);
+
+/* As ethd_setup_key_at, ethd_setup_set and ethd_setup_get, in the key's unit, with their errors (ETHD_E_...). Numbers of
+   ETHD_SPACE_NUMBERS are called "space.radius", those of the ability "ability.delay" (NaN: not known), kind and effector
+   "space.command" and "space.effector"; parameters as in the plane, "contact.k_e". [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_key_at(const ethd_space_setup *setup, uint32_t index,
+                                                       ethd_setup_key *out);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_set(ethd_space_setup *setup, const char *name, double value,
+                                                    ethd_error *error);
+ETHD_API double ethd_space_get(const ethd_space_setup *setup, const char *name);
 
 /* ---- the controller: as ethd_control_ of the same name says, for space ---- */
 

@@ -1,11 +1,7 @@
 #include <math.h>
-#include <stdbool.h>
 #include <stddef.h>
-#include <string.h>
 
 #include "control/setup.h"
-#include "error.h"
-#include "fp_mode.h"
 
 #define AT(member) (uint32_t)offsetof(ethd_setup, member)
 
@@ -18,144 +14,47 @@ const ethd_setup_part ethd_setup_parts[ETHD_SETUP_PARTS] = {
     {"transition", "law", NULL, 0, ETHD_TRANSITION, AT(transition), AT(transition_p)},
 };
 
-_Static_assert(sizeof(ethd_velocity_method) == sizeof(unsigned), "a method is copied as a number");
-_Static_assert(sizeof(ethd_fit_method) == sizeof(unsigned), "a method is copied as a number");
-_Static_assert(sizeof(ethd_filter_method) == sizeof(unsigned), "a method is copied as a number");
-
-/* ---- what is chosen ---- */
-
-const ethd_setup_part *ethd_setup_part_of(const char *section) {
-  for (const ethd_setup_part *part = ethd_setup_parts; part < ethd_setup_parts + ETHD_SETUP_PARTS; part++)
-    if (strcmp(part->section, section) == 0) return part;
-  return NULL;
-}
-
-/* Describes a law in the terms of a method. */
-static ethd_method described(const ethd_law *law) {
-  if (!law) return (ethd_method){0};
-  return (ethd_method){law->id, law->brief, law->params, ethd__setup_room(law->params, law->param_count)};
-}
-
-ethd_method ethd_setup_chosen(const ethd_setup *setup, const ethd_setup_part *part) {
-  const char *chosen = (const char *)setup + part->chosen;
-  const ethd_law *law;
-  unsigned method;
-  if (ethd__setup_made(setup, NULL) < 0) return (ethd_method){0};
-  if (part->methods) {
-    memcpy(&method, chosen, sizeof method);
-    return method < part->count ? part->methods[method] : (ethd_method){0};
-  }
-  memcpy(&law, chosen, sizeof law); /* the first member of every law's struct */
-  return described(law);
-}
-
-static void choose(ethd_setup *setup, const ethd_setup_part *part, const void *chosen, size_t size) {
-  double *values = (double *)(void *)((char *)setup + part->values);
-  memcpy((char *)setup + part->chosen, chosen, size);
-  ethd_method method = ethd_setup_chosen(setup, part);
-  memset(values, 0, ETHD_PARAMS_MAX * sizeof *values);
-  ethd_params_default(method.params, method.param_count, values);
-}
-
-ethd_status ethd_setup_choose(ethd_setup *setup, const char *section, const char *id, const ethd_law *const *laws,
-                              ethd_error *error) {
-  const ethd_setup_part *part = ethd_setup_part_of(section);
-  ethd_status status = ethd__setup_made(setup, error);
-  if (status < 0) return status;
-  if (!part) return ethd__error(error, ETHD_E_UNKNOWN, section);
-  for (unsigned i = 0; i < part->count; i++)
-    if (strcmp(part->methods[i].id, id) == 0) return choose(setup, part, &i, sizeof i), ETHD_OK;
-  for (; !part->methods && *laws; laws++)
-    if ((*laws)->kind == part->kind && strcmp((*laws)->id, id) == 0)
-      return choose(setup, part, laws, sizeof *laws), ETHD_OK;
-  return ethd__error(error, ETHD_E_UNKNOWN, id);
-}
-
-/* ---- numbers ---- */
-
 static ethd__setup_field field_of_limit(const ethd_limit *limit) {
   return (ethd__setup_field){
       {"limits", {limit->name, limit->unit, limit->min, limit->max, (double)NAN, limit->brief}, limit->count},
       AT(limits) + limit->offset};
 }
 
-/* Finds the `index`-th number of a setup: its own fields, then limits, then parameters of what is chosen. */
-static bool find_at(const ethd_setup *setup, uint32_t index, ethd__setup_field *out) {
-  if (index < ETHD__SETUP_FIELDS) return *out = ethd__setup_fields[index], true;
-  index -= ETHD__SETUP_FIELDS;
-  if (index < ETHD_LIMITS) return *out = field_of_limit(&ethd_limit_rows[index]), true;
-  index -= ETHD_LIMITS;
-  for (const ethd_setup_part *part = ethd_setup_parts; part < ethd_setup_parts + ETHD_SETUP_PARTS; part++) {
-    ethd_method method = ethd_setup_chosen(setup, part);
-    if (index < method.param_count) {
-      *out = (ethd__setup_field){{part->section, method.params[index], 1},
-                                 part->values + index * (uint32_t)sizeof(double)};
-      return true;
-    }
-    index -= method.param_count;
-  }
-  return false;
+static ethd__setup_field field_at(uint32_t index) {
+  return index < ETHD__SETUP_FIELDS ? ethd__setup_fields[index]
+                                    : field_of_limit(&ethd_limit_rows[index - ETHD__SETUP_FIELDS]);
+}
+
+static ethd_status made(const void *setup, ethd_error *error) { return ethd__setup_made(setup, error); }
+
+static double get(const void *setup, const ethd__setup_field *field, uint32_t index) {
+  return ethd__setup_field_get(setup, field, index);
+}
+
+static void set(void *setup, const ethd__setup_field *field, uint32_t index, double value) {
+  ethd__setup_field_set(setup, field, index, value);
+}
+
+static const ethd__named named = {
+    ethd_setup_parts, ETHD_SETUP_PARTS, ETHD__SETUP_FIELDS + ETHD_LIMITS, field_at, get, set, made};
+
+const ethd_setup_part *ethd_setup_part_of(const char *section) { return ethd__named_part_of(&named, section); }
+
+ethd_method ethd_setup_chosen(const ethd_setup *setup, const ethd_setup_part *part) {
+  return ethd__named_chosen(&named, setup, part);
+}
+
+ethd_status ethd_setup_choose(ethd_setup *setup, const char *section, const char *id, const ethd_law *const *laws,
+                              ethd_error *error) {
+  return ethd__named_choose(&named, setup, section, id, laws, error);
 }
 
 ethd_status ethd_setup_key_at(const ethd_setup *setup, uint32_t index, ethd_setup_key *out) {
-  ethd__setup_field field;
-  if (!find_at(setup, index, &field)) return ETHD_STATUS_EMPTY;
-  *out = field.key;
-  return ETHD_OK;
-}
-
-/* Returns what follows "section.key" in a name, NULL if the name is another key's. */
-static const char *after(const ethd_setup_key *key, const char *name) {
-  size_t section = strlen(key->section), own = strlen(key->param.name);
-  if (strncmp(name, key->section, section) != 0 || name[section] != '.') return NULL;
-  if (strncmp(name + section + 1, key->param.name, own) != 0) return NULL;
-  name += section + 1 + own;
-  return *name == 0 || *name == '[' ? name : NULL;
-}
-
-/* Turns "[2]" into 2, and what isn't an index into ETHD_RAYS, which no key has. */
-static uint32_t index_of(const char *text) {
-  uint32_t index = 0;
-  const char *at = text + 1;
-  for (; *at >= '0' && *at <= '9' && index < ETHD_RAYS; at++) index = 10 * index + (uint32_t)(*at - '0');
-  return at > text + 1 && at[0] == ']' && !at[1] ? index : ETHD_RAYS;
-}
-
-static ethd_status find(const ethd_setup *setup, const char *name, ethd__setup_field *out, uint32_t *index,
-                        ethd_error *error) {
-  const char *rest = NULL;
-  ethd_status status = ethd__setup_made(setup, error);
-  if (status < 0) return status;
-  for (uint32_t i = 0; !rest && find_at(setup, i, out); i++) rest = after(&out->key, name);
-  if (!rest) return ethd__error(error, ETHD_E_UNKNOWN, name);
-  if (!*rest && out->key.count > 1)
-    return ethd__refuse(error, ETHD_E_ARGUMENT, name, (ethd__found){(double)NAN, 0, out->key.count - 1});
-  *index = *rest ? index_of(rest) : 0;
-  if (*index >= out->key.count || (*rest && out->key.count == 1))
-    return ethd__refuse(error, ETHD_E_RANGE, name, (ethd__found){(double)NAN, 0, out->key.count - 1});
-  return ETHD_OK;
-}
-
-ETHD__FP_APART static ethd_status set(ethd_setup *setup, const char *name, double value, ethd_error *error) {
-  ethd__setup_field field;
-  uint32_t index;
-  ethd_status status = find(setup, name, &field, &index, error);
-  if (status < 0) return status;
-  status = ethd_params_check(&field.key.param, 1, &value, error);
-  if (status < 0) return ethd__error_prefix(error, field.key.section), status;
-  ethd__setup_field_set(setup, &field, index, value);
-  return ETHD_OK;
+  return ethd__named_key_at(&named, setup, index, out);
 }
 
 ethd_status ethd_setup_set(ethd_setup *setup, const char *name, double value, ethd_error *error) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = set(setup, name, value, error);
-  ethd__fp_give(callers);
-  return status;
+  return ethd__named_set(&named, setup, name, value, error);
 }
 
-double ethd_setup_get(const ethd_setup *setup, const char *name) {
-  ethd__setup_field field;
-  uint32_t index;
-  return find(setup, name, &field, &index, NULL) < 0 ? (double)NAN : ethd__setup_field_get(setup, &field, index);
-}
+double ethd_setup_get(const ethd_setup *setup, const char *name) { return ethd__named_get(&named, setup, name); }

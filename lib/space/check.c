@@ -121,11 +121,15 @@ static void prepare_core(const ethd_space_setup *s, ethd__core_plan *out) {
   ethd__laws_plan(ETHD__LAWS(s), out);
 }
 
-ETHD__FP_APART static ethd_status prepare(const ethd_space_setup *s, ethd__space_plan *out, ethd_error *error) {
+ethd_status ethd__space_setup_made(const ethd_space_setup *s, ethd_error *error) {
   if (!s || s->cookie != COOKIE)
     return ethd__error(error, ETHD_E_ARGUMENT, "setup (made by ethd_space_setup_default?)");
-  if (s->bytes != sizeof *s)
-    return ethd__refuse(error, ETHD_E_SIZE, "ethd_space_setup", (ethd__found){s->bytes, sizeof *s, sizeof *s});
+  if (s->bytes == sizeof *s) return ETHD_OK;
+  return ethd__refuse(error, ETHD_E_SIZE, "ethd_space_setup", (ethd__found){s->bytes, sizeof *s, sizeof *s});
+}
+
+ETHD__FP_APART static ethd_status prepare(const ethd_space_setup *s, ethd__space_plan *out, ethd_error *error) {
+  TRY(ethd__space_setup_made(s, error));
   if ((unsigned)s->kind > ETHD_SPACE_VELOCITY) return ethd__error(error, ETHD_E_ARGUMENT, "kind");
   if ((unsigned)s->effector > ETHD_EFFECTOR_PLATE) return ethd__error(error, ETHD_E_ARGUMENT, "effector");
   TRY(check_numbers(s, error));

@@ -53,6 +53,7 @@ static bool note_what_is_wrong(ethd__space_tick *t) {
   ethd__rows_begin(core, t->sense->faults, t->sense->grave);
   const bool possible = input_is_possible(t, &which);
   if (!possible) ethd__note_value(core, ETHD_FAULT_INPUT, which);
+  if (!possible && which == ETHD_SPACE_SURFACES) t->trace->near = ETHD_NEAR_REFUSED;
   ethd__clock_check(core, t->sense->time_ns, t->periods, t->plan->setup.period, t->plan->setup.gap);
   if (possible && !core->fault && !(1e-9 * (double)t->sense->step_ns <= t->plan->setup.step_time))
     ethd__note_value(core, ETHD_FAULT_BUDGET, (double)t->sense->step_ns);
