@@ -33,13 +33,13 @@ static void choice(const ethd_param *row, double value) {
 }
 
 /* Prints several numbers under one key, unless all of them have their default. */
-static void numbers(const ethd_setup *setup, const ethd_setup_key *key) {
+static void numbers(const ethd__config_front *front, const void *setup, const ethd_setup_key *key) {
   char line[512] = "";
   bool differs = false;
   for (uint32_t i = 0; i < key->count; i++) {
     char name[96], text[32];
     snprintf(name, sizeof name, "%s.%s[%u]", key->section, key->param.name, i);
-    double value = ethd_setup_get(setup, name);
+    double value = front->get(setup, name);
     exact(value, text);
     strcat(strcat(line, " "), text);
     differs |= value != key->param.def;
@@ -47,29 +47,30 @@ static void numbers(const ethd_setup *setup, const ethd_setup_key *key) {
   if (differs) printf("%-13s =%s ; %s, %s\n", key->param.name, line, key->param.unit, key->param.brief);
 }
 
-static void value(const ethd_setup *setup, const ethd_setup_key *key) {
+static void value(const ethd__config_front *front, const void *setup, const ethd_setup_key *key) {
   char name[96];
   snprintf(name, sizeof name, "%s.%s", key->section, key->param.name);
   if (key->count > 1)
-    numbers(setup, key);
-  else if (isnan(ethd_setup_get(setup, name)))
+    numbers(front, setup, key);
+  else if (isnan(front->get(setup, name)))
     return; /* an unknown value isn't printed */
   else if (ethd_param_words(&key->param))
-    choice(&key->param, ethd_setup_get(setup, name));
+    choice(&key->param, front->get(setup, name));
   else
-    number(key->param.name, ethd_setup_get(setup, name), key->param.unit, key->param.brief);
+    number(key->param.name, front->get(setup, name), key->param.unit, key->param.brief);
 }
 
 /* Prints what is chosen and the numbers; only the limits that were given. */
 static void section(const ethd_config *c, const char *name) {
-  const ethd_setup *s = &c->setup;
-  const ethd_setup_part *part = ethd_setup_part_of(name);
+  const ethd__config_front *front = ethd__front_of(c);
+  const void *s = ethd__front_setup(c);
+  const ethd_setup_part *part = front->part_of(name);
   ethd_setup_key key;
-  printf("%s[%s]\n", strcmp(name, "arm") ? "\n" : "", name);
-  if (part) word(part->chooser, ethd_setup_chosen(s, part).id, ethd_setup_chosen(s, part).brief);
-  for (uint32_t i = 0; ethd_setup_key_at(s, i, &key) == ETHD_OK; i++) {
+  printf("%s[%s]\n", strcmp(name, c->is_space ? "space" : "arm") ? "\n" : "", name);
+  if (part) word(part->chooser, front->chosen(s, part).id, front->chosen(s, part).brief);
+  for (uint32_t i = 0; front->key_at(s, i, &key) == ETHD_OK; i++) {
     int limit = ethd__config_limit(key.section, key.param.name);
-    if (strcmp(key.section, name) == 0 && (limit < 0 || (c->limits_given >> limit & 1))) value(s, &key);
+    if (strcmp(key.section, name) == 0 && (limit < 0 || (c->limits_given >> limit & 1))) value(front, s, &key);
   }
 }
 
@@ -85,8 +86,14 @@ static void other_limits(const ethd_config *c) {
 static void scene(const ethd_config *c) {
   const ethd_ini_key *file = ethd_ini_find(&ethd__config_whole(c)->ini, "scene", "file");
   ethd_scene_info info;
-  if (!file) printf("; none: there is no wall (ethd-tap puts the paper's there)\n");
-  if (!file) return;
+  ethd_solids_info solids;
+  if (!file) printf("; none: there is no wall%s\n", c->is_space ? "" : " (ethd-tap puts the paper's there)");
+  if (file && c->is_space) {
+    ethd_solids_describe(c->solids, &solids);
+    printf("file          = %s ; %zu object%s, %zu material%s\n", file->value, solids.objects, ethd__s(solids.objects),
+           solids.materials, ethd__s(solids.materials));
+  }
+  if (!file || c->is_space) return;
   ethd_scene_describe(c->scene, &info);
   printf("file          = %s ; %zu object%s, %zu material%s, %zu out of the arm's reach\n", file->value, info.objects,
          ethd__s(info.objects), info.materials, ethd__s(info.materials),
@@ -110,6 +117,7 @@ void ethd__report_setup(const ethd_config *config) {
       {"finger", difference}, {"limits", other_limits}, {"scene", scene}, {"device", device}, {"plugins", plugins}};
   for (const ethd__section *s = ethd__sections; s->name; s++) {
     const char *name = s->name;
+    if (!(s->fronts & ethd__front_of(config)->bit)) continue;
     section(config, name);
     for (size_t k = 0; k < sizeof besides / sizeof *besides; k++)
       if (strcmp(besides[k].section, name) == 0) besides[k].print(config);

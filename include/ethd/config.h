@@ -1,6 +1,9 @@
 /* Configurations: an INI file becomes a setup and the choice of a device.
    Links from libethd-drivers and libethd.
 
+   A file with a section [space] configures the front in space (space.h), any other one that of the plane. Sections that
+   the fronts share mean the same; those of the other front are refused.
+
    Everything has a default, so an empty file is valid. Files are read strictly: unknown sections or keys, duplicates,
    values out of range, NaN, hex, trailing junk and over-long lines are errors with file:line, what was found and what
    is allowed. Paths in a file are relative to its folder. All [main]. */
@@ -9,6 +12,8 @@
 
 #include "ethd/control.h"
 #include "ethd/driver.h"
+#include "ethd/solids.h"
+#include "ethd/space.h"
 
 ETHD_BEGIN_DECLS
 
@@ -17,7 +22,7 @@ typedef struct ethd_config {
   ethd_scene *scene;                  /* owned, without what the arm can't reach; NULL if none is configured */
   char *path;                         /* of the file, NULL for defaults */
   char *text;                         /* as it was read, for recordings */
-  char *scene_text;                   /* as it was read; NULL if there is no scene */
+  char *scene_text;                   /* as it was read, of solids too; NULL if there are none */
   char *folder;                       /* relative paths start here */
   uint32_t limits_given;              /* bit i: of ethd_limit_rows[i] */
   char device[ETHD_DRIVERS_TEXT_MAX]; /* the drivers' ids as written, "sim" by default */
@@ -26,6 +31,9 @@ typedef struct ethd_config {
   const ethd_law **laws; /* built in and of plugins; ends with NULL */
   char **plugins;        /* their files */
   uint32_t plugin_count;
+  int32_t is_space;       /* 1: `space` is what the file says, and `setup` has defaults */
+  ethd_space_setup space; /* ready to create a controller with; it has the parameters on the solids' materials */
+  ethd_solids *solids;    /* owned; NULL if none are configured */
 } ethd_config;
 
 /* What a configuration is read from, for the functions below. */
@@ -45,8 +53,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_make(const ethd_config_source *
                                                       char message[ETHD_MESSAGE_MAX]);
 
 /* Reads a configuration; path NULL gives the defaults. On failure *out is NULL and message holds one line:
-   ETHD_E_FILE, ETHD_E_SYNTAX, ETHD_E_UNKNOWN, ETHD_E_DUPLICATE, ETHD_E_MEMORY, the statuses of ethd_scene_parse,
-   ethd_plugin_open and ethd_config_make, and those of ethd_setup_check. Its plugins are loaded, and their code runs. */
+   ETHD_E_FILE, ETHD_E_SYNTAX, ETHD_E_UNKNOWN, ETHD_E_DUPLICATE, ETHD_E_MEMORY, the statuses of ethd_scene_parse or
+   ethd_solids_parse, ethd_plugin_open and ethd_config_make, and those of ethd_setup_check or ethd_space_check. Its plugins are loaded, and their code runs. */
 static inline ETHD_MUST_CHECK ethd_status ethd_config_load(const char *path, ethd_config **out,
                                                            char message[ETHD_MESSAGE_MAX]) {
   const ethd_config_source source = {ethd_sizes_here(), (uint32_t)sizeof(ethd_config), 0, path, NULL, 0, NULL};
@@ -100,6 +108,14 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_transition(const ethd_config *c
    ethd_setup_check. A refusal changes nothing. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_set(const ethd_config *config, const char *key, const char *value,
                                                      ethd_setup *setup, char message[ETHD_MESSAGE_MAX]);
+
+/* As ethd_config_law and ethd_config_set for a setup of a configuration of space, with the statuses of ethd_space_check
+   (ETHD_E_...). The parameters on the solids' materials follow from those of the contact law. */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_space_law(const ethd_config *config, const char *kind, const char *id,
+                                                           ethd_space_setup *setup, char message[ETHD_MESSAGE_MAX]);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_space_set(const ethd_config *config, const char *key,
+                                                           const char *value, ethd_space_setup *setup,
+                                                           char message[ETHD_MESSAGE_MAX]);
 
 /* Writes an error that a call of the library left as "file:line: name: sentence; found 3, allowed 0 to 2". */
 ETHD_API void ethd_error_text(const char *file, const ethd_error *error, char message[ETHD_MESSAGE_MAX]);

@@ -33,8 +33,9 @@ static ethd_status parse_scene(ethd__config *whole, size_t length, char message[
     for (const char *p = c->scene_text; p < zero; p++) line += *p == '\n';
     return ethd__say(message, ETHD_E_SYNTAX, "%s:%d: a byte 0: this isn't text", whole->scene_path, line);
   }
-  ethd_status status = ethd_scene_parse(c->scene_text, length, &c->scene, &error);
-  if (status) ethd__scene_refusal(whole->scene_path, &error, message);
+  ethd_status status = c->is_space ? ethd_solids_parse(c->scene_text, length, &c->solids, &error)
+                                   : ethd_scene_parse(c->scene_text, length, &c->scene, &error);
+  if (status) (c->is_space ? ethd__solids_refusal : ethd__scene_refusal)(whole->scene_path, &error, message);
   c->setup.scene = c->scene;
   return status;
 }
@@ -65,7 +66,11 @@ static const ethd_ini_key *find_key(const config_reading *r, const char *name) {
 
 /* Finds the key to blame. A default fails only because of another key, which the file has. */
 static const ethd_ini_key *find_cause(const config_reading *r, const char *name) {
-  static const char *const by[][2] = {{"finger.radius", "ring.radius"}, {"finger.radius_max", "ring.radius"}};
+  static const char *const by[][2] = {
+      {"finger.radius", "ring.radius"},        {"finger.radius_max", "ring.radius"},
+      {"space.finger_radius", "space.radius"}, {"space.finger_radius_max", "space.radius"},
+      {"space.x_max", "space.x_min"},          {"space.y_max", "space.y_min"},
+      {"space.z_max", "space.z_min"}};
   for (size_t i = 0; i < sizeof by / sizeof *by; i++)
     if (!strcmp(by[i][0], name)) return find_key(r, by[i][1]);
   return NULL;
@@ -75,7 +80,9 @@ static const ethd_ini_key *find_cause(const config_reading *r, const char *name)
 static ethd_status check_setup(const config_reading *r) {
   ethd_error error;
   char what[ETHD_MESSAGE_MAX];
-  ethd_status status = ethd__config_check(&r->whole->config, &r->whole->config.setup, &error);
+  ethd_config *c = &r->whole->config;
+  void *setup = c->is_space ? (void *)&c->space : &c->setup;
+  ethd_status status = ethd__config_check(c, ethd__front_of(c), setup, &error);
   if (!status) return ETHD_OK;
   bool material = strncmp(error.name, "material.", 9) == 0;
   const ethd_ini_key *own = material ? NULL : find_key(r, error.name), *cause = own ? NULL : find_cause(r, error.name);
@@ -111,11 +118,20 @@ static ethd_status drop_unreachable(const config_reading *r) {
   return ETHD_OK;
 }
 
+/* Returns the section that makes the configuration one of space. */
+static const ethd_ini_section *find_space(const ethd_ini *ini) {
+  for (uint32_t i = 0; i < ini->section_count; i++)
+    if (strcmp(ini->sections[i].name, "space") == 0) return &ini->sections[i];
+  return NULL;
+}
+
 static ethd_status read_keys(const config_reading *r) {
   const ethd_ini *ini = &r->whole->ini;
+  const ethd_ini_section *space = find_space(ini);
   ethd_status status = ETHD_OK;
+  r->whole->config.is_space = space != NULL;
   for (uint32_t i = 0; !status && i < ini->section_count; i++)
-    status = ethd__config_section_known(&ini->sections[i], r->name, r->message);
+    status = ethd__config_section_known(&ini->sections[i], space, r->name, r->message);
   for (int pass = 0; pass < ETHD__PASSES; pass++)
     for (uint32_t i = 0; !status && i < ini->count; i++) {
       const ethd_ini_key *k = &ini->keys[i];
@@ -146,6 +162,7 @@ static char *copy_text(const char *text, size_t length) {
 
 static bool fill(ethd_config *c, const char *text, size_t length, const char *name, const char *folder) {
   c->setup = ethd_setup_default();
+  c->space = ethd_space_setup_default();
   strcpy(c->device, "sim");
   c->path = name ? strdup(name) : NULL;
   c->text = copy_text(text, length);
@@ -216,6 +233,7 @@ void ethd_config_free(ethd_config *config) {
   if (!config) return;
   ethd__config *whole = (ethd__config *)config;
   ethd_scene_destroy(config->scene);
+  ethd_solids_destroy(config->solids);
   for (uint32_t i = 0; i < config->plugin_count; i++) free(config->plugins[i]);
   free(config->plugins);
   free(config->laws);

@@ -6,10 +6,11 @@
 #include "settings/config_parts.h"
 #include "text/error_text.h"
 
-ethd_status ethd__config_choose(const ethd_config *config, const ethd__key *key, ethd_setup *setup) {
-  const ethd_setup_part *part = ethd_setup_part_of(key->section);
+ethd_status ethd__config_choose(const ethd_config *config, const ethd__key *key, const ethd__config_front *front,
+                                void *setup) {
+  const ethd_setup_part *part = front->part_of(key->section);
   char ids[ETHD_MESSAGE_MAX] = "", quote[ETHD_QUOTE_MAX];
-  if (ethd_setup_choose(setup, key->section, key->value, config->laws, NULL) == ETHD_OK) return ETHD_OK;
+  if (front->choose(setup, key->section, key->value, config->laws) == ETHD_OK) return ETHD_OK;
   for (uint32_t i = 0; i < part->count; i++) ethd__list_add(ids, part->methods[i].id);
   for (const ethd_law *const *law = config->laws; !part->methods && *law; law++)
     if ((*law)->kind == part->kind) ethd__list_add(ids, (*law)->id);
@@ -47,15 +48,15 @@ ethd_status ethd__config_preset(ethd__config *config, const ethd__key *key) {
 
 /* ---- a change of law ---- */
 
-static double *values(const ethd_setup *setup, const ethd_setup_part *part) {
+static double *values(const void *setup, const ethd_setup_part *part) {
   return (double *)(void *)((char *)setup + part->values);
 }
 
 /* Keeps values that were chosen, in the file or later; values that were the old law's defaults become the new law's. */
-static void keep_common(const ethd_config *config, const ethd_setup_part *part, const ethd_setup *from,
-                        ethd_setup *to) {
+static void keep_common(const ethd_config *config, const ethd__config_front *front, const ethd_setup_part *part,
+                        const void *from, void *to) {
   const ethd_ini *ini = &ethd__config_whole(config)->ini;
-  const ethd_method had = ethd_setup_chosen(from, part), has = ethd_setup_chosen(to, part);
+  const ethd_method had = front->chosen(from, part), has = front->chosen(to, part);
   const double *old = values(from, part);
   double *p = values(to, part);
   for (uint32_t i = 0; i < had.param_count; i++) {
@@ -65,26 +66,38 @@ static void keep_common(const ethd_config *config, const ethd_setup_part *part, 
   }
 }
 
-ethd_status ethd_config_law(const ethd_config *config, const char *kind, const char *id, ethd_setup *setup,
-                            char message[ETHD_MESSAGE_MAX]) {
-  const ethd_setup_part *part = ethd_setup_part_of(kind);
+ethd_status ethd__config_law(const ethd_config *config, const ethd__config_front *front, const char *kind,
+                             const char *id, void *setup, char message[ETHD_MESSAGE_MAX]) {
+  const ethd_setup_part *part = front->part_of(kind);
   ethd__key key = {NULL, 0, kind, "law", id, message};
-  ethd_setup changed = *setup;
+  ethd__setup_copy changed;
   ethd_error error;
   if (!part || part->methods)
     return ethd__say(message, ETHD_E_ARGUMENT, "found %.40s, a law of tracking, contact or transition is allowed",
                      kind);
-  ethd_status status = ethd__config_choose(config, &key, &changed);
+  memcpy(&changed, setup, front->bytes);
+  ethd_status status = ethd__config_choose(config, &key, front, &changed);
   if (status) return status;
-  if (part->kind == ETHD_TRANSITION && is_paper(config)) open_caps(&changed.transition->law, changed.transition_p);
-  keep_common(config, part, setup, &changed);
-  status = ethd__config_check(config, &changed, &error);
+  if (front == &ethd__front_plane && part->kind == ETHD_TRANSITION && is_paper(config))
+    open_caps(&changed.plane.transition->law, changed.plane.transition_p);
+  keep_common(config, front, part, setup, &changed);
+  status = ethd__config_check(config, front, &changed, &error);
   if (status < 0) {
     ethd_error_text(NULL, &error, message);
     return status;
   }
-  *setup = changed;
+  memcpy(setup, &changed, front->bytes);
   return ETHD_OK;
+}
+
+ethd_status ethd_config_law(const ethd_config *config, const char *kind, const char *id, ethd_setup *setup,
+                            char message[ETHD_MESSAGE_MAX]) {
+  return ethd__config_law(config, &ethd__front_plane, kind, id, setup, message);
+}
+
+ethd_status ethd_config_space_law(const ethd_config *config, const char *kind, const char *id, ethd_space_setup *setup,
+                                  char message[ETHD_MESSAGE_MAX]) {
+  return ethd__config_law(config, &ethd__front_space, kind, id, setup, message);
 }
 
 ethd_status ethd_config_transition(const ethd_config *config, const char *id, ethd_setup *setup,

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "ethd/config.h"
+#include "settings/front.h"
 #include "text/key.h"
 
 /* An ethd_config with its private parts. */
@@ -31,10 +31,11 @@ typedef struct ethd__file_key {
   ethd_status (*read)(ethd__config *config, const ethd__key *key);
 } ethd__file_key;
 
-/* A section. It has these keys, the key that ethd_setup_part_of(name) chooses, and the numbers that the setup has under
+/* A section. It has these keys, the key that part_of(name) chooses, and the numbers that the setup has under
    its name. */
 typedef struct ethd__section {
   const char *name;
+  unsigned fronts; /* that have it */
   ethd__file_key keys[2];
 } ethd__section;
 
@@ -44,20 +45,27 @@ extern const ethd__section ethd__sections[]; /* a NULL name ends it */
 ethd_status ethd__config_read(ethd__config *config, const ethd__key *key, ethd__pass pass);
 
 /* Returns true if commands can't set the key. */
-bool ethd__config_in_files_only(const char *section, const char *key);
+bool ethd__config_in_files_only(const ethd__config_front *front, const char *section, const char *key);
 
 /* Refuses a key that its section doesn't have under the laws of the setup. */
-ethd_status ethd__config_unknown(const ethd__key *key, const ethd_setup *setup);
+ethd_status ethd__config_unknown(const ethd__key *key, const ethd__config_front *front, const void *setup);
 
-/* Refuses a section that no configuration has, even if it is without keys. */
-ethd_status ethd__config_section_known(const ethd_ini_section *section, const char *file,
+/* Refuses a section that no configuration of this front has, even if it is without keys. `space`: the section that
+   makes it one of space, NULL: none does. */
+ethd_status ethd__config_section_known(const ethd_ini_section *section, const ethd_ini_section *space, const char *file,
                                        char message[ETHD_MESSAGE_MAX]);
 
 /* ---- config_keys.c: numbers ---- */
 
 /* Reads a number, a word or several numbers into the setup. Ranges are checked, relations between keys are left to
-   ethd_setup_check. */
-ethd_status ethd__config_number(const ethd__key *key, ethd_setup *setup);
+   the front's check. */
+ethd_status ethd__config_number(const ethd__key *key, const ethd__config_front *front, void *setup);
+
+/* Do what ethd_config_set and ethd_config_law do, for a setup of either front. */
+ethd_status ethd__config_set(const ethd_config *config, const ethd__config_front *front, const char *name,
+                             const char *value, void *setup, char message[ETHD_MESSAGE_MAX]);
+ethd_status ethd__config_law(const ethd_config *config, const ethd__config_front *front, const char *kind,
+                             const char *id, void *setup, char message[ETHD_MESSAGE_MAX]);
 
 /* Returns the index in ethd_limit_rows, -1 if the key isn't a limit. */
 int ethd__config_limit(const char *section, const char *key);
@@ -65,7 +73,8 @@ int ethd__config_limit(const char *section, const char *key);
 /* ---- the keys of files ---- */
 
 /* Applies law = ... or method = ..., with default parameters. */
-ethd_status ethd__config_choose(const ethd_config *config, const ethd__key *key, ethd_setup *setup);
+ethd_status ethd__config_choose(const ethd_config *config, const ethd__key *key, const ethd__config_front *front,
+                                void *setup);
 
 /* [scene] file: reads the scene. */
 ethd_status ethd__config_scene(ethd__config *config, const ethd__key *key);
@@ -84,8 +93,9 @@ extern void (*ethd__foreign_code)(const char *what, unsigned patience);
    plugins. */
 void ethd__config_foreign(const ethd_config *config, const char *what);
 
-/* Calls ethd_setup_check, in which laws of the configuration's plugins may run. */
-ethd_status ethd__config_check(const ethd_config *config, const ethd_setup *setup, ethd_error *error);
+/* Calls the front's check, in which laws of the configuration's plugins may run. */
+ethd_status ethd__config_check(const ethd_config *config, const ethd__config_front *front, void *setup,
+                               ethd_error *error);
 
 /* [plugins] file: opens the plugin and adds its laws to config->laws. */
 ethd_status ethd__config_plugin(ethd__config *config, const ethd__key *key);

@@ -121,9 +121,10 @@ static void foreign(const char *what) {
   if (ethd__foreign_code) ethd__foreign_code(what, ETHD__PATIENCE);
 }
 
-ethd_status ethd__config_check(const ethd_config *config, const ethd_setup *setup, ethd_error *error) {
+ethd_status ethd__config_check(const ethd_config *config, const ethd__config_front *front, void *setup,
+                               ethd_error *error) {
   if (config->plugin_count) foreign("the check of a plugin's law");
-  ethd_status status = ethd_setup_check(setup, error);
+  ethd_status status = front->check(config, setup, error);
   foreign(NULL);
   return status;
 }

@@ -59,90 +59,106 @@ static ethd_status device_setting(ethd__config *c, const ethd__key *key) {
   return ETHD_OK;
 }
 
+#define PLANE ETHD__PLANE
+#define SPACE ETHD__SPACE
+#define BOTH ETHD__BOTH
+
 const ethd__section ethd__sections[] = {
-    {"arm", {{0}}},
-    {"ring", {{0}}},
-    {"finger", {{0}}},
-    {"loop", {{0}}},
-    {"velocity", {{0}}},
-    {"finger_fit", {{0}}},
-    {"finger_filter", {{0}}},
-    {"tracking", {{0}}},
-    {"contact", {{0}}},
-    {"transition", {{"preset", ETHD__PASS_PRESET, ethd__config_preset}}},
-    {"scene", {{"file", ETHD__PASS_REST, ethd__config_scene}}},
-    {"limits", {{0}}},
-    {"device", {{"driver", ETHD__PASS_REST, driver}, {"*", ETHD__PASS_REST, device_setting}}},
-    {"plugins", {{"file", ETHD__PASS_PLUGINS, ethd__config_plugin}}},
-    {NULL, {{0}}},
+    {"arm", PLANE, {{0}}},
+    {"ring", PLANE, {{0}}},
+    {"finger", PLANE, {{0}}},
+    {"loop", PLANE, {{0}}},
+    {"space", SPACE, {{0}}},
+    {"ability", SPACE, {{0}}},
+    {"velocity", PLANE, {{0}}},
+    {"finger_fit", PLANE, {{0}}},
+    {"finger_filter", BOTH, {{0}}},
+    {"tracking", BOTH, {{0}}},
+    {"contact", BOTH, {{0}}},
+    {"transition", PLANE, {{"preset", ETHD__PASS_PRESET, ethd__config_preset}}},
+    {"transition", SPACE, {{0}}},
+    {"scene", BOTH, {{"file", ETHD__PASS_REST, ethd__config_scene}}},
+    {"limits", PLANE, {{0}}},
+    {"device", BOTH, {{"driver", ETHD__PASS_REST, driver}, {"*", ETHD__PASS_REST, device_setting}}},
+    {"plugins", BOTH, {{"file", ETHD__PASS_PLUGINS, ethd__config_plugin}}},
+    {NULL, 0, {{0}}},
 };
 
-static const ethd__section *find_section(const char *name) {
+static const ethd__section *find_section(unsigned fronts, const char *name) {
   for (const ethd__section *s = ethd__sections; s->name; s++)
-    if (strcmp(s->name, name) == 0) return s;
+    if (s->fronts & fronts && strcmp(s->name, name) == 0) return s;
   return NULL;
 }
 
-static const ethd__file_key *find_file_key(const char *section, const char *key) {
-  const ethd__section *s = find_section(section);
+static const ethd__file_key *find_file_key(const ethd__config_front *front, const char *section, const char *key) {
+  const ethd__section *s = find_section(front->bit, section);
   for (size_t i = 0; s && i < sizeof s->keys / sizeof *s->keys && s->keys[i].key; i++)
     if (strcmp(s->keys[i].key, key) == 0 || strcmp(s->keys[i].key, "*") == 0) return &s->keys[i];
   return NULL;
 }
 
-static bool chooses(const char *section, const char *key) {
-  const ethd_setup_part *part = ethd_setup_part_of(section);
+static bool chooses(const ethd__config_front *front, const char *section, const char *key) {
+  const ethd_setup_part *part = front->part_of(section);
   return part && strcmp(part->chooser, key) == 0;
 }
 
-bool ethd__config_in_files_only(const char *section, const char *key) {
-  return find_file_key(section, key) || chooses(section, key);
+bool ethd__config_in_files_only(const ethd__config_front *front, const char *section, const char *key) {
+  return find_file_key(front, section, key) || chooses(front, section, key);
 }
 
 /* ---- any key ---- */
 
 ethd_status ethd__config_read(ethd__config *whole, const ethd__key *key, ethd__pass pass) {
   ethd_config *c = &whole->config;
-  const ethd__file_key *file_key = find_file_key(key->section, key->key);
+  const ethd__config_front *front = ethd__front_of(c);
+  void *setup = c->is_space ? (void *)&c->space : &c->setup;
+  const ethd__file_key *file_key = find_file_key(front, key->section, key->key);
   if (file_key) return file_key->pass == pass ? file_key->read(whole, key) : ETHD_OK;
-  if (chooses(key->section, key->key))
-    return pass == ETHD__PASS_CHOICES ? ethd__config_choose(c, key, &c->setup) : ETHD_OK;
+  if (chooses(front, key->section, key->key))
+    return pass == ETHD__PASS_CHOICES ? ethd__config_choose(c, key, front, setup) : ETHD_OK;
   if (pass != ETHD__PASS_REST) return ETHD_OK;
   int limit = ethd__config_limit(key->section, key->key);
   if (limit >= 0) c->limits_given |= 1u << limit;
-  return ethd__config_number(key, &c->setup);
+  return ethd__config_number(key, front, setup);
 }
 
 /* ---- unknown keys and sections ---- */
 
 /* "unknown section; arm, ... are allowed" */
-static const char *unknown_section(char out[ETHD_MESSAGE_MAX]) {
+static const char *unknown_section(unsigned front, char out[ETHD_MESSAGE_MAX]) {
   char list[ETHD_MESSAGE_MAX] = "";
-  for (const ethd__section *s = ethd__sections; s->name; s++) ethd__list_add(list, s->name);
+  for (const ethd__section *s = ethd__sections; s->name; s++)
+    if (s->fronts & front) ethd__list_add(list, s->name);
   snprintf(out, ETHD_MESSAGE_MAX, "unknown section; %.*s are allowed", ETHD_MESSAGE_MAX - 64, list);
   return out;
 }
 
-ethd_status ethd__config_section_known(const ethd_ini_section *section, const char *file,
+ethd_status ethd__config_section_known(const ethd_ini_section *section, const ethd_ini_section *space, const char *file,
                                        char message[ETHD_MESSAGE_MAX]) {
+  const unsigned front = space ? ETHD__SPACE : ETHD__PLANE;
   char what[ETHD_MESSAGE_MAX];
-  if (find_section(section->name)) return ETHD_OK;
+  if (find_section(front, section->name)) return ETHD_OK;
+  if (space && find_section(ETHD__PLANE, section->name))
+    return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: [%s]: is a section of the plane, but [space] in line %d is there",
+                     file, section->line, section->name, space->line);
+  if (find_section(ETHD__SPACE, section->name))
+    return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: [%s]: is a section of space, but there is no [space]", file,
+                     section->line, section->name);
   return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: [%s]: %s", file, section->line, section->name,
-                   unknown_section(what));
+                   unknown_section(front, what));
 }
 
-ethd_status ethd__config_unknown(const ethd__key *key, const ethd_setup *setup) {
-  const ethd__section *section = find_section(key->section);
-  const ethd_setup_part *part = ethd_setup_part_of(key->section);
+ethd_status ethd__config_unknown(const ethd__key *key, const ethd__config_front *front, const void *setup) {
+  const ethd__section *section = find_section(front->bit, key->section);
+  const ethd_setup_part *part = front->part_of(key->section);
   char list[ETHD_MESSAGE_MAX] = "";
   ethd_setup_key row;
-  if (!section) return ethd__key_refuse(key, ETHD_E_UNKNOWN, "%s", unknown_section(list));
+  if (!section) return ethd__key_refuse(key, ETHD_E_UNKNOWN, "%s", unknown_section(front->bit, list));
   if (part) ethd__list_add(list, part->chooser);
   for (size_t i = 0; i < sizeof section->keys / sizeof *section->keys && section->keys[i].key; i++)
     ethd__list_add(list, section->keys[i].key);
-  for (uint32_t i = 0; ethd_setup_key_at(setup, i, &row) == ETHD_OK; i++)
+  for (uint32_t i = 0; front->key_at(setup, i, &row) == ETHD_OK; i++)
     if (strcmp(row.section, key->section) == 0) ethd__list_add(list, row.param.name);
   if (!part) return ethd__key_refuse(key, ETHD_E_UNKNOWN, "unknown key; %s are allowed", list);
-  return ethd__key_refuse(key, ETHD_E_UNKNOWN, "not a key of %s, which has %s", ethd_setup_chosen(setup, part).id,
-                          list);
+  return ethd__key_refuse(key, ETHD_E_UNKNOWN, "not a key of %s, which has %s", front->chosen(setup, part).id, list);
 }

@@ -15,12 +15,16 @@ static bool ends_in(const char *text, const char *end) {
   return n > m && !strcmp(text + n - m, end) && text[n - m - 1] == ' ';
 }
 
+/* A world's shapes, as its text writes them. */
+typedef struct shape_words {
+  const char *names[8], *forms[8]; /* NULL ends the names */
+} shape_words;
+
 /* Says what a line with the wrong count of numbers should be; the error's name ends in the shape's name. */
-static void say_form(const ethd_error *error, const char *plain, char message[ETHD_MESSAGE_MAX]) {
+static void say_form(const shape_words *w, const ethd_error *error, const char *plain, char message[ETHD_MESSAGE_MAX]) {
   const char *form = "", *name = "SHAPE NUMBERS [material=NAME] or material NAME [KEY=NUMBER...]";
-  for (int i = 0; i < ETHD_SHAPE_COUNT && isfinite(error->found); i++)
-    if (ends_in(error->name, ethd_shape_name((ethd_shape)i)))
-      name = ethd_shape_name((ethd_shape)i), form = ethd_shape_form((ethd_shape)i);
+  for (int i = 0; w->names[i] && isfinite(error->found); i++)
+    if (ends_in(error->name, w->names[i])) name = w->names[i], form = w->forms[i];
   ethd__say(message, error->status, "%s; %s%s%s is allowed", plain, name, *form ? " " : "", form);
 }
 
@@ -38,12 +42,11 @@ static bool say_drawing(const char *path, const ethd_error *error, char message[
   return true;
 }
 
-void ethd__scene_refusal(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]) {
+static void refusal(const shape_words *w, const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]) {
   char shapes[160] = "", plain[ETHD_MESSAGE_MAX];
-  if (say_drawing(path, error, message)) return;
   ethd_error_text(path, error, plain);
-  for (int i = 0; i < ETHD_SHAPE_COUNT; i++) {
-    strcat(shapes, ethd_shape_name((ethd_shape)i));
+  for (int i = 0; w->names[i]; i++) {
+    strcat(shapes, w->names[i]);
     strcat(shapes, ", ");
   }
   if (error->status == ETHD_E_UNKNOWN && !strncmp(error->name, REFERENCE, strlen(REFERENCE)))
@@ -52,9 +55,25 @@ void ethd__scene_refusal(const char *path, const ethd_error *error, char message
   else if (error->status == ETHD_E_UNKNOWN)
     ethd__say(message, error->status, "%s; %smaterial are allowed", plain, shapes);
   else if (error->status == ETHD_E_SYNTAX)
-    say_form(error, plain, message);
+    say_form(w, error, plain, message);
   else
     ethd__say(message, error->status, "%s", plain);
+}
+
+void ethd__scene_refusal(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]) {
+  shape_words w = {{NULL}, {NULL}};
+  _Static_assert(ETHD_SHAPE_COUNT < sizeof w.names / sizeof *w.names, "the shapes have room");
+  if (say_drawing(path, error, message)) return;
+  for (int i = 0; i < ETHD_SHAPE_COUNT; i++)
+    w.names[i] = ethd_shape_name((ethd_shape)i), w.forms[i] = ethd_shape_form((ethd_shape)i);
+  refusal(&w, path, error, message);
+}
+
+void ethd__solids_refusal(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]) {
+  static const shape_words w = {
+      {"halfspace", "sphere", "capsule", "box", NULL},
+      {"NX NY NZ C", "X Y Z R", "X1 Y1 Z1 X2 Y2 Z2 R", "X Y Z HALF_X HALF_Y HALF_Z [RX RY RZ]", NULL}};
+  refusal(&w, path, error, message);
 }
 
 static void print_number(FILE *out, const char *before, double v) {

@@ -15,4 +15,7 @@ ETHD_MUST_CHECK ethd_status ethd_scene_print(const ethd_scene *scene, FILE *out)
    [main] */
 void ethd__scene_refusal(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]);
 
+/* Does so about what ethd_solids_parse refused. [main] */
+void ethd__solids_refusal(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]);
+
 #endif
