@@ -1,4 +1,5 @@
-/* Recordings: a folder with tick.npy (one ethd_trace a row), config.ini, the scene, events.csv.
+/* Recordings: a folder with tick.npy (a row is an ethd_trace, or of space an ethd_space_trace), config.ini, the scene,
+   events.csv.
    Links from libethd-drivers and libethd.
 
    tick.npy is a NumPy structured array. Its header's count is raised after each flush, so a killed run
@@ -59,14 +60,14 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
 /* Writes an event to events.csv (row,kind,detail); the events of a row of tick.npy come before it, in order. kind:
      setup       detail: law. The configuration's setup with this transition law, in a new controller
      start       detail: free words. A new controller (or a reset one) with the present setup; with "enabled" the
-                 running one was restarted and its motors keep their heat
+                 running one was restarted and its motors keep their heat; in space it was reset
      transition  detail: law. Changes the transition law of the present setup
      contact     detail: law. Changes its contact law
      tracking    detail: law. Changes its tracking law
      set         detail: section.key value. Changes the present setup
      clear       faults were acknowledged
-     heat        detail: h1 h2. The motors' heat, see ethd_control_heat
-     learned     detail: m1 m2 m3 m4. What the transition law has learnt, see ethd_control_memory
+     heat        detail: h1 h2. The motors' heat, see ethd_control_heat; not in space
+     learned     detail: m1 m2 m3 m4. What the transition law has learnt, see ethd_control_memory; not in space
      fault       detail: a sentence for people
      clock       detail: ns date. The date (UTC) at an instant of time_ns, once in a recording of a real device:
                  12345678901234 2026-11-26T04:12:12.123456789Z
@@ -78,8 +79,11 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_event(ethd_recording *recording, const char *kind,
                                                           const char *detail);
 
-/* Adds a row to tick.npy. ETHD_E_FILE: it, or an earlier one, couldn't be written. */
+/* Add a row to tick.npy, of the front of the recording's configuration. ETHD_E_FILE: it, or an earlier one, couldn't be
+   written; ETHD_E_ARGUMENT: the recording is one of the other front. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_tick(ethd_recording *recording, const ethd_trace *trace);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_tick_space(ethd_recording *recording,
+                                                               const ethd_space_trace *trace);
 
 /* Says why a file of the recording couldn't be written, with its path; "" while all could. What comes after the first
    failure is lost: there events.csv gets a row of kind fault, for which it keeps room on a full disk. */
@@ -92,12 +96,13 @@ ETHD_API uint64_t ethd_recording_kept(const ethd_recording *recording);
    now or before. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_close(ethd_recording *recording, char message[ETHD_MESSAGE_MAX]);
 
-/* Replays a recording through the library and compares every field that it has bit for bit. ETHD_OK: equal, and message says how
-   many ticks. ETHD_E_DIFFERS: message names the first tick and field that differ. ETHD_E_UNFINISHED: the ticks that are
-   there are equal, but the recording wasn't closed, so later ones may be lost; or ticks are missing in between, and
-   what follows can't be replayed; or another thread or a handler of signals has set *stop (NULL: never). Any other
+/* Replays a recording through the library and compares every field that it has bit for bit. ETHD_OK: equal, and message
+   says how many ticks. ETHD_E_DIFFERS: message names the first tick and field that differ. ETHD_E_UNFINISHED: the ticks
+   that are there are equal, but the recording wasn't closed, so later ones may be lost; or ticks are missing in between,
+   and what follows can't be replayed; or another thread or a handler of signals has set *stop (NULL: never). Any other
    negative status: message says why it can't be read. Without `plugins` a recording that needs one is refused, since a
-   plugin is a program that the folder brings along. */
+   plugin is a program that the folder brings along. In space the field `overflow` isn't compared, since surfaces that
+   found no room in a row can't be shown again. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_verify(const char *folder, bool plugins, const volatile int *stop,
                                                            char message[ETHD_MESSAGE_MAX]);
 

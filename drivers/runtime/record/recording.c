@@ -8,6 +8,7 @@
 #include "ethd/record.h"
 #include "record/npy_parts.h"
 #include "record/recording_parts.h"
+#include "record/replayed.h"
 #include "settings/config_parts.h"
 #include "text/csv.h"
 #include "text/error_text.h"
@@ -19,6 +20,7 @@
 struct ethd_recording {
   ethd_npy *ticks;
   FILE *events;
+  const ethd__replayed *front;
   uint64_t rows; /* that came, whether they are in the file or lost */
   ethd__claim claim;
   char *folder, failure[ETHD_MESSAGE_MAX]; /* "": none */
@@ -107,7 +109,8 @@ static ethd_status open_files(const char *folder, ethd_recording *recording, cha
   char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);
   char *events = ethd__path_join(folder, ETHD_RECORDING_EVENTS);
   ethd_status status = ticks && events ? ETHD_OK : ethd__no_memory(message, folder);
-  if (!status) status = ethd_npy_create(ticks, ethd_trace_columns, sizeof(ethd_trace), &recording->ticks, message);
+  if (!status)
+    status = ethd_npy_create(ticks, recording->front->columns, recording->front->row_bytes, &recording->ticks, message);
   if (!status) status = open_events(events, recording, message);
   free(ticks);
   free(events);
@@ -125,6 +128,7 @@ ethd_status ethd_recording_create(const char *folder, const ethd_config *config,
   ethd_recording *recording = calloc(1, sizeof *recording);
   if (!recording) return ethd__no_memory(message, folder);
   recording->claim = ETHD_CLAIM_NONE;
+  recording->front = ethd__replayed_of(config);
   recording->folder = strdup(folder);
   ethd_status status = ethd__recording_claim(folder, config, replace, &recording->claim, message);
   if (!status) status = open_files(folder, recording, message);
@@ -176,9 +180,18 @@ ethd_status ethd_recording_event(ethd_recording *recording, const char *kind, co
   return ethd__recording_fail(recording, ETHD_RECORDING_EVENTS, errno ? errno : EIO);
 }
 
-ethd_status ethd_recording_tick(ethd_recording *recording, const ethd_trace *trace) {
+static ethd_status add_row(ethd_recording *recording, const ethd_column *columns, const void *row) {
+  if (recording->front->columns != columns) return ETHD_E_ARGUMENT;
   recording->rows++;
-  return ethd_npy_append(recording->ticks, trace, 1) ? ticks_failed(recording) : ETHD_OK;
+  return ethd_npy_append(recording->ticks, row, 1) ? ticks_failed(recording) : ETHD_OK;
+}
+
+ethd_status ethd_recording_tick(ethd_recording *recording, const ethd_trace *trace) {
+  return add_row(recording, ethd_trace_columns, trace);
+}
+
+ethd_status ethd_recording_tick_space(ethd_recording *recording, const ethd_space_trace *trace) {
+  return add_row(recording, ethd_space_trace_columns, trace);
 }
 
 /* Writes the last event after ticks that are all in the file. */

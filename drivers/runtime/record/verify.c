@@ -7,6 +7,7 @@
 #include "ethd/record.h"
 #include "record/npy_parts.h"
 #include "record/recording_parts.h"
+#include "record/replayed.h"
 #include "settings/config_parts.h"
 #include "text/error_text.h"
 #include "text/file.h"
@@ -17,14 +18,16 @@ typedef struct verification {
   bool plugins;
   char *events_path;
   ethd_config *config;
+  const ethd__config_front *front; /* of the configuration */
+  const ethd__replayed *replayed;  /* and of its controller */
   ethd__record_events events;
   char *tick_path;
   ethd__npy_reader rows;
   size_t next; /* event */
-  ethd_setup setup;
+  ethd__setup_copy setup;
   double heat[2];              /* of the motors, by the last event of that kind */
   double learned[ETHD_MEMORY]; /* the law's memory, by the last event of that kind */
-  ethd_control *control;
+  void *control;
   const ethd__record_event *missing; /* the event that says that ticks are missing; NULL: none is */
   char *message;
 } verification;
@@ -36,14 +39,17 @@ static ethd_status open_config(verification *r) {
   if (!path) return ethd__no_memory(r->message, NULL);
   ethd_status status = (r->plugins ? ethd_config_load : ethd_config_load_received)(path, &r->config, r->message);
   free(path);
-  if (!status) r->setup = r->config->setup;
-  return status;
+  if (status) return status;
+  r->front = ethd__front_of(r->config);
+  r->replayed = ethd__replayed_of(r->config);
+  memcpy(&r->setup, ethd__front_setup(r->config), r->front->bytes);
+  return ETHD_OK;
 }
 
 static ethd_status open_rows(verification *r) {
   r->tick_path = ethd__path_join(r->folder, ETHD_RECORDING_TICK);
   if (!r->tick_path) return ethd__no_memory(r->message, NULL);
-  return ethd__npy_reader_open(r->tick_path, ethd_trace_columns, sizeof(ethd_trace), &r->rows, r->message);
+  return ethd__npy_reader_open(r->tick_path, r->replayed->columns, r->replayed->row_bytes, &r->rows, r->message);
 }
 
 static ethd_status open_events(verification *r) {
@@ -84,19 +90,19 @@ static ethd_status set(verification *r, const char *detail, char *what) {
     return ethd__say(what, ETHD_E_SYNTAX, "section.key value is allowed");
   memcpy(key, detail, (size_t)(space - detail));
   key[space - detail] = 0;
-  return ethd_config_set(r->config, key, space + 1, &r->setup, what);
+  return ethd__config_set(r->config, r->front, key, space + 1, &r->setup, what);
 }
 
 static ethd_status apply(verification *r, const ethd__record_event *e, int *done) {
   char what[ETHD_MESSAGE_MAX];
   ethd_status status = ETHD_OK;
   if (strcmp(e->kind, "setup") == 0) {
-    r->setup = r->config->setup;
-    status = ethd_config_transition(r->config, e->detail, &r->setup, what);
+    memcpy(&r->setup, ethd__front_setup(r->config), r->front->bytes);
+    status = ethd__config_law(r->config, r->front, "transition", e->detail, &r->setup, what);
     *done |= FRESH;
   } else if (strcmp(e->kind, "transition") == 0 || strcmp(e->kind, "contact") == 0 ||
              strcmp(e->kind, "tracking") == 0) {
-    status = ethd_config_law(r->config, e->kind, e->detail, &r->setup, what);
+    status = ethd__config_law(r->config, r->front, e->kind, e->detail, &r->setup, what);
     *done |= CHANGED;
   } else if (strcmp(e->kind, "set") == 0) {
     status = set(r, e->detail, what);
@@ -105,10 +111,10 @@ static ethd_status apply(verification *r, const ethd__record_event *e, int *done
     *done |= strcmp(e->detail, "enabled") == 0 ? WARM : FRESH;
   } else if (strcmp(e->kind, "clear") == 0) {
     *done |= CLEAR;
-  } else if (strcmp(e->kind, "heat") == 0) {
+  } else if (strcmp(e->kind, "heat") == 0 && r->replayed->set_heat) {
     status = take_heat(r, e->detail, what);
     *done |= HOT;
-  } else if (strcmp(e->kind, "learned") == 0) {
+  } else if (strcmp(e->kind, "learned") == 0 && r->replayed->set_memory) {
     status = take_learned(r, e->detail, what);
     *done |= TAUGHT;
   } else if (strcmp(e->kind, "thinned") == 0 || strcmp(e->kind, "lost") == 0) {
@@ -117,7 +123,8 @@ static ethd_status apply(verification *r, const ethd__record_event *e, int *done
     status =
         ethd__say(what, ETHD_E_UNKNOWN,
                   "an unknown kind of event; setup, start, transition, contact, tracking, set, clear, thinned, lost, "
-                  "heat, learned, fault, clock, end are allowed");
+                  "%sfault, clock, end are allowed",
+                  r->replayed->set_heat ? "heat, learned, " : "");
   }
   if (!status) return ETHD_OK;
   return ethd__say(r->message, status, "%s:%zu: %s: %s", r->events_path, e->line, e->kind, what);
@@ -127,16 +134,16 @@ static ethd_status renew(verification *r, int done) {
   ethd_error error = {0};
   ethd_status status = ETHD_OK;
   if ((done & ~(HOT | TAUGHT)) == WARM && r->control) {
-    ethd_control_restart(r->control);
+    r->replayed->restart(r->control);
   } else if (done & (FRESH | WARM)) {
-    ethd_control_destroy(r->control);
-    status = ethd_control_create(&r->setup, &r->control, &error);
+    r->replayed->destroy(r->control);
+    status = r->replayed->create(&r->setup, &r->control, &error);
   } else if (done & CHANGED) {
-    status = ethd_control_post(r->control, &r->setup, &error);
+    status = r->replayed->post(r->control, &r->setup, &error);
   }
-  if (done & CLEAR && r->control) ethd_control_acknowledge(r->control);
-  if (done & HOT && !status) ethd_control_set_heat(r->control, r->heat);
-  if (done & TAUGHT && !status) ethd_control_set_memory(r->control, r->learned);
+  if (done & CLEAR && r->control) r->replayed->acknowledge(r->control);
+  if (done & HOT && !status) r->replayed->set_heat(r->control, r->heat);
+  if (done & TAUGHT && !status) r->replayed->set_memory(r->control, r->learned);
   if (status) ethd_error_text(r->events_path, &error, r->message);
   return status;
 }
@@ -148,12 +155,6 @@ static ethd_status before_row(verification *r, size_t row) {
     if (status) return status;
   }
   return renew(r, done);
-}
-
-/* Keeps the event ring empty, because a setup is taken only while it has room. */
-static void drain(ethd_control *control) {
-  ethd_event event;
-  while (ethd_control_poll(control, &event) == ETHD_OK) continue;
 }
 
 /* ---- comparing ---- */
@@ -178,13 +179,18 @@ static void say_number(char type, const unsigned char *at, char out[32]) {
     snprintf(out, 32, "%" PRId64, integer);
 }
 
-static ethd_status compare(const verification *r, size_t row, const ethd_trace *recorded, const ethd_trace *replayed) {
-  const unsigned char *a = (const unsigned char *)recorded, *b = (const unsigned char *)replayed;
+/* Returns true if a replay can tell what the column holds. */
+static bool is_repeated(const verification *r, const ethd_column *c) {
+  return !ethd__npy_lacks(&r->rows.shape, c) && !(r->replayed->unrepeated && !strcmp(r->replayed->unrepeated, c->name));
+}
+
+static ethd_status compare(const verification *r, size_t row, const void *recorded, const void *replayed) {
+  const unsigned char *a = recorded, *b = replayed;
   char was[32], is[32], index[16] = "";
-  for (const ethd_column *c = ethd_trace_columns; c->name; c++)
-    for (uint32_t i = 0; i < c->count && !ethd__npy_lacks(&r->rows.shape, c); i++) {
+  for (const ethd_column *c = r->replayed->columns; c->name; c++)
+    for (uint32_t i = 0; i < c->count; i++) {
       size_t at = c->offset + i * (size_t)8;
-      if (same(c, a + at, b + at)) continue;
+      if (same(c, a + at, b + at) || !is_repeated(r, c)) continue;
       if (c->count > 1) snprintf(index, sizeof index, "[%u]", i);
       say_number(c->type, a + at, was);
       say_number(c->type, b + at, is);
@@ -203,8 +209,8 @@ static ethd_status judge_end(const verification *r) {
                      r->folder, r->rows.shape.count, ethd__s(r->rows.shape.count));
   if (last->row != r->rows.shape.count)
     return ethd__say(r->message, ETHD_E_DIFFERS, "%s:%zu: end: row: found %" PRIu64 ", but there %s %zu tick%s",
-                     r->events_path, last->line, last->row, r->rows.shape.count == 1 ? "is" : "are", r->rows.shape.count,
-                     ethd__s(r->rows.shape.count));
+                     r->events_path, last->line, last->row, r->rows.shape.count == 1 ? "is" : "are",
+                     r->rows.shape.count, ethd__s(r->rows.shape.count));
   return ethd__say(r->message, ETHD_OK, "%s: %zu tick%s, equal to the bit", r->folder, r->rows.shape.count,
                    ethd__s(r->rows.shape.count));
 }
@@ -224,17 +230,18 @@ static ethd_status stopped(const verification *r, size_t row) {
 static ethd_status run(verification *r, const volatile int *stop) {
   for (size_t row = 0; row < r->rows.shape.count; row++) {
     if (stop && *stop) return stopped(r, row);
-    ethd_trace trace;
-    ethd_command command;
+    union {
+      ethd_trace plane;
+      ethd_space_trace space;
+    } trace;
     const void *recorded;
     ethd_status status = ethd__npy_reader_next(&r->rows, &recorded, r->message);
     if (!status) status = before_row(r, row);
     if (status) return status;
     memset(&trace, 0, sizeof trace);
     ethd__config_foreign(r->config, "a plugin's law");
-    (void)ethd_control_step(r->control, &((const ethd_trace *)recorded)->sense, &command, &trace);
+    r->replayed->step(r->control, recorded, &trace);
     ethd__config_foreign(r->config, NULL);
-    drain(r->control);
     status = compare(r, row, recorded, &trace);
     if (status) return r->missing ? unreplayable(r, row) : status;
   }
@@ -251,7 +258,7 @@ ethd_status ethd_recording_verify(const char *folder, bool plugins, const volati
   if (!status) status = open_rows(&r);
   if (!status) status = open_events(&r);
   if (!status) status = run(&r, stop);
-  ethd_control_destroy(r.control);
+  if (r.replayed) r.replayed->destroy(r.control);
   ethd_config_free(r.config);
   ethd__record_events_free(&r.events);
   ethd__npy_reader_close(&r.rows);
