@@ -25,7 +25,9 @@ static const char doc[] =
     "friction stops only small oscillations. Where a loop is unstable without friction, a line gives the speed up to "
     "which friction stops an oscillation, and the speed that one encoder count gives the motors; if the second speed "
     "is larger, the ring chatters for ever. A plugin's law that doesn't name its gains isn't judged; the last lines "
-    "say so.\n\n"
+    "say so. For a configuration of space ([space]) it prints the setup, and the distance that the device needs to "
+    "react "
+    "before a wall.\n\n"
     "--laws and --drivers list the laws, methods and drivers that a configuration can name, with each parameter's "
     "unit, range and default. The first law or method of each kind is the default; for transitions it is offset.\n\n"
     "The exit code is 0 for a valid configuration, whether bounds are exceeded or not, and 2, with one line, for an "
@@ -188,12 +190,30 @@ static ethd__figures figures(const ethd_config *config, const ethd_device *d, do
 
 /* ---- all of it ---- */
 
+static void end_of_page(int exceeded) { printf("\n%d bound%s exceeded\n", exceeded, exceeded == 1 ? "" : "s"); }
+
+/* A configuration of space says of its device what the bounds need. */
+static void check_space(ethd_config *config) {
+  if (arg.open || arg.counts || arg.delay || arg.force || arg.friction || arg.viscous || arg.latency)
+    ethd__fail(ETHD_EXIT_INPUT,
+               "%s: [space] is there; --open and the figures are for the plane, [ability] is for space", arg.config);
+  printf("; %s is valid\n\n", arg.config);
+  ethd__report_setup(config);
+  printf("\n");
+  end_of_page(ethd__report_space(&config->space));
+  ethd_config_free(config);
+}
+
 static void check(void) {
   char message[ETHD_MESSAGE_MAX];
   ethd_config *config;
   ethd__container_keeper(); /* what is said of the guardian holds for ethd-run */
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  if (config->is_space) {
+    check_space(config);
+    return;
+  }
   ethd_device *device = reach_device(config);
   printf("; %s is valid\n\n", arg.config);
   ethd__report_setup(config);
@@ -211,7 +231,7 @@ static void check(void) {
   exceeded += ethd__report_threshold(&subject);
   exceeded += ethd__report_tick(&subject);
   if (config->setup.scene) ethd__scene_say_thin(config->setup.scene, "\nscene        ");
-  printf("\n%d bound%s exceeded\n", exceeded, exceeded == 1 ? "" : "s");
+  end_of_page(exceeded);
   ethd__report_unjudged(&config->setup);
   ethd_device_close(device);
   ethd_config_free(config);

@@ -82,6 +82,7 @@ static int ask_driver(void) {
   ethd__container_keeper();
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need_plane(config);
   const ethd_device_def device = {&config->setup, config->settings, config->setting_count,
                                   config->folder, config->path,     arg.is_virtual};
   (arg.is_virtual ? ethd__catch_end : ethd__hold_device)();

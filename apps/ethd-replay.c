@@ -160,6 +160,7 @@ static int replay(void) {
   ethd_error error;
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need_plane(config);
   status = ethd__trace_in_read(arg.in, &in, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
   config->setup.limits.latch = 0;

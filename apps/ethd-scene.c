@@ -11,7 +11,7 @@ static const char doc[] =
     "distance over the objects, the normal into that object there, and the object's number in the file. Objects out of "
     "the arm's reach count too.\n"
     "info: counts, extent, build time, memory, and objects out of the arm's reach. A picture shows the objects, the "
-    "boxes of the tree by depth, and the arm's reach.\n"
+    "boxes of the tree by depth, and the arm's reach. Solids of space are described too.\n"
     "convert: IN is a drawing (.svg or .dxf) or a scene (.scene), OUT a scene. A filled shape becomes a solid, a "
     "filled shape with holes becomes walls, and a shape with a stroke alone becomes a thin wall, whatever its width. "
     "Text, images and other content that a scene can't hold are left out and counted. y points up. Python, librsvg and "

@@ -52,6 +52,10 @@ int ethd__report_stop(const ethd__subject *subject);
 int ethd__report_threshold(const ethd__subject *subject);
 int ethd__report_tick(const ethd__subject *subject);
 
+/* Prints how far before a wall the device has to react, and whether the gap is enough; returns how many bounds are
+   exceeded. */
+int ethd__report_space(const ethd_space_setup *setup);
+
 /* Writes the velocity estimator as "lowpass, cutoff 133.4 Hz". */
 void ethd__velocity_text(const ethd_setup *setup, char *out, size_t room);
 

@@ -101,6 +101,7 @@ static ethd_status add_recording(ethd__evidence *e, const char *folder, char *me
   char *path = join(folder, ETHD_RECORDING_CONFIG);
   ethd_config *config = NULL;
   ethd_status status = (e->plugins ? ethd_config_load : ethd_config_load_received)(path, &config, message);
+  if (!status) ethd__need_plane(config);
   free(path);
   if (!status) status = take(e, folder, config, message);
   ethd_config_free(config);

@@ -185,6 +185,7 @@ int ethd__excite(const ethd__excitation *given) {
   ethd_config *config;
   ethd_status status = ethd_config_load(x.config, &config, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need_plane(config);
   (x.is_virtual ? ethd__catch_end : ethd__hold_device)(); /* from here on no print waits */
   double torque = torque_limit(&x, config);
   seen dry;

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "cli/cli.h"
 #include "record/limits_event.h"
 #include "run/refusal.h"
 #include "run/session.h"
@@ -107,6 +108,7 @@ ethd_status ethd__session_open(const ethd__session_options *o, ethd__session *s,
   ethd_status status = o->text ? ethd_config_parse(o->text, strlen(o->text), o->config ? o->config : "the defaults",
                                                    o->folder, &s->config, message)
                                : ethd_config_load(o->config, &s->config, message);
+  if (!status) status = ethd__refuse_space(s->config, message);
   if (!status) status = open_device(s, o->folder, message);
   if (!status) status = open_recorder(s, o, message);
   if (!status) status = open_loop(s, o, message);

@@ -12,6 +12,7 @@ static ethd_setup setup_of(const char *path) {
   if (!path) return ethd_setup_default();
   ethd_status status = ethd_config_load(path, &config, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need_plane(config);
   ethd_setup setup = config->setup;
   setup.scene = NULL;
   ethd_config_free(config);
@@ -31,11 +32,34 @@ static void say_counts(const char *name, const ethd_scene_info *info) {
     printf("extent:       %s\n", info->by_shape[ETHD_SHAPE_HALFPLANE] ? "half-planes only" : "none");
 }
 
+static int solids_info(const ethd__scene_args *arg, const ethd_solids *solids, double seconds) {
+  ethd_solids_info info;
+  if (arg->plot || arg->config)
+    ethd__fail(ETHD_EXIT_INPUT, "%s: holds solids; --plot and --config are for scenes of the plane", arg->scene);
+  ethd_solids_describe(solids, &info);
+  printf("%s: %zu solid%s\n", arg->scene, info.objects, ethd__s(info.objects));
+  printf("materials:    %zu\n", info.materials);
+  if (info.min.x <= info.max.x)
+    printf("extent:       x %.9g to %.9g m, y %.9g to %.9g m, z %.9g to %.9g m, without half-spaces\n", info.min.x,
+           info.max.x, info.min.y, info.max.y, info.min.z, info.max.z);
+  else
+    printf("extent:       %s\n", info.objects ? "half-spaces only" : "none");
+  printf("build time:   %.3g ms (read and built)\n", 1e3 * seconds);
+  printf("memory:       %zu bytes\n", info.bytes);
+  return ETHD_EXIT_DONE;
+}
+
 int ethd__scene_info(const ethd__scene_args *arg) {
   double seconds;
+  ethd_solids *solids;
+  ethd_scene *scene = ethd__world_load(arg->scene, &solids, &seconds);
+  if (solids) {
+    const int code = solids_info(arg, solids, seconds);
+    ethd_solids_destroy(solids);
+    return code;
+  }
   ethd_scene_info info;
   ethd_setup setup = setup_of(arg->config);
-  ethd_scene *scene = ethd__scene_load(arg->scene, &seconds);
   ethd_scene_describe(scene, &info);
   say_counts(arg->scene, &info);
   printf("build time:   %.3g ms (read and built)\n", 1e3 * seconds);

@@ -19,6 +19,9 @@ typedef struct ethd__scene_args {
 /* Loads a scene file and measures the time of reading and building; exits on failure. */
 ethd_scene *ethd__scene_load(const char *path, double *seconds);
 
+/* Does so with a scene, or with solids where the file holds these; then it returns NULL. */
+ethd_scene *ethd__world_load(const char *path, ethd_solids **solids, double *seconds);
+
 int ethd__scene_query(const ethd__scene_args *arg);
 int ethd__scene_info(const ethd__scene_args *arg);
 int ethd__scene_convert(const ethd__scene_args *arg);

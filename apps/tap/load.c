@@ -93,6 +93,7 @@ static void load_config(const char *config, const char *plant, bool plugins, eth
                "have theirs",
                out->path, strerror(errno), plant);
   check((plugins ? ethd_config_load : ethd_config_load_received)(out->path, &out->config, message), message);
+  ethd__need_plane(out->config);
   if (!out->config->scene) take_wall(out);
 }
 

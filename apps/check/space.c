@@ -1,0 +1,63 @@
+/* How far before a wall a device in space has to react, in closed form. */
+#include <math.h>
+#include <stdio.h>
+
+#include "check/report.h"
+
+typedef struct reaction {
+  double a;    /* m/s^2 that the device brakes with; NaN: not known */
+  double late; /* s from a command to its motion, and the period for which it is held */
+  double gap;  /* m between finger and effector */
+} reaction;
+
+static double param(const ethd_space_setup *s, const char *name, double otherwise) {
+  const double value = ethd_space_get(s, name);
+  return isnan(value) ? otherwise : value;
+}
+
+/* As the law `approach` sees the device. */
+static reaction reaction_of(const ethd_space_setup *s) {
+  const ethd_ability *able = &s->ability;
+  const double limit = s->kind == ETHD_SPACE_VELOCITY ? s->acceleration : (double)INFINITY;
+  double a = fmin(isnan(able->acceleration) ? able->force / able->mass : able->acceleration, limit);
+  if (!(a < 1e6)) a = param(s, "transition.acceleration", NAN);
+  return (reaction){param(s, "transition.effort", 1) * a, (isnan(able->delay) ? 0 : able->delay) + s->period,
+                    s->radius - s->finger_radius};
+}
+
+static double distance(const reaction *r, double v) { return v * r->late + v * v / (2 * r->a); }
+
+/* Returns the speed whose distance is d, in the form without a difference of near numbers. */
+static double speed_of(const reaction *r, double d) {
+  return 2 * d / (r->late + sqrt(r->late * r->late + 2 * d / r->a));
+}
+
+int ethd__report_space(const ethd_space_setup *s) {
+  static const double speeds[] = {0.2, 0.4};
+  const reaction r = reaction_of(s);
+  int exceeded = 0;
+  printf(
+      "reaction distance        v t_d + v^2/(2a): by so much the finger comes closer until the effector stands at the "
+      "wall\n");
+  printf("  t_d                    %.4g ms: delay %s, and the period %.4g ms\n", 1e3 * r.late,
+         isnan(s->ability.delay) ? "not known (0; [ability] delay gives it)" : "of [ability]", 1e3 * s->period);
+  if (isnan(r.a)) {
+    printf("  a                      not known: [ability] acceleration, or force and mass, give it\n");
+    return 0;
+  }
+  printf("  a                      %.4g m/s^2\n", r.a);
+  for (int i = 0; i < 2; i++) {
+    const double need = distance(&r, speeds[i]);
+    printf("  at %.1f m/s             %.3f mm of the gap, %.3f mm: %s\n", speeds[i], 1e3 * need, 1e3 * r.gap,
+           need > r.gap ? "the finger arrives before the effector stands; a larger space.radius leaves it time"
+                        : "the effector stands when the finger arrives");
+    exceeded += need > r.gap;
+  }
+  printf("  highest speed          %.3f m/s at which the gap is enough\n", speed_of(&r, r.gap));
+  const double range = param(s, "transition.range", NAN);
+  if (isnan(range)) return exceeded;
+  const bool is_short = s->speed < (double)INFINITY && distance(&r, s->speed) > range;
+  printf("  range                  %.4g m before the wall, enough to stop from %.3f m/s%s\n", range,
+         speed_of(&r, range), is_short ? ": space.speed is higher; a larger transition.range is needed" : "");
+  return exceeded + is_short;
+}
