@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import numpy as np
+import numpy.lib.recfunctions
 from python_help import build, folder, refuses, tree, write
 
 import ethd
@@ -119,6 +120,42 @@ with open(odd + "/config.ini", "ab") as file:
 refuses("config.ini:", lambda: ethd.read(odd), ValueError)
 write("odd/config.ini", "k = 1\n")
 refuses("odd/config.ini: File contains no section headers", lambda: ethd.read(odd), ValueError)
+
+# a recording of an earlier version lacks columns that were added since, and replays all the same
+older = np.lib.recfunctions.repack_fields(whole[[name for name in whole.dtype.names if name not in ("finger_noise", "learnt")]])
+shutil.copytree(folder + "/run", folder + "/older")
+np.save(folder + "/older/tick.npy", older)
+for (row, step), now in zip(ethd.read(folder + "/older").replay(), whole):
+    assert "learnt" not in row.dtype.names and step.trace.tobytes() == now.tobytes()
+assert "equal to the bit" in ethd.read(folder + "/older").verify()
+
+# ---- in space: taps on solids equal C's traces to the bit, from the recording and from Python's own loop ----
+subprocess.run([build + "/tests/space_tap", tree + "/apps/config/space.ini", folder + "/space"], check=True)
+s = ethd.read(folder + "/space")
+assert isinstance(s, ethd.SpaceRecording) and s.tick.dtype == ethd.SPACE_TRACE and "4000 ticks, equal to the bit" in s.verify()
+assert set(s.tick["state"]) == {0, 1, 2} and ethd.SPACE_UNITS["near_point"] == "m"
+assert all(step.trace.tobytes() == row.tobytes() for row, step in s.replay())
+c, x, v = ethd.Space(tree + "/apps/config/space.ini"), np.array([0.3, 0, 0.3]), np.zeros(3)
+sense = np.zeros((), ethd.SPACE_SENSE)
+for i, row in enumerate(s.tick):
+    sense["time_ns"], sense["have"], sense["x"], sense["v"] = 1000000 * i, 1, x, v
+    sense["finger"], sense["finger_v"] = row["finger"], row["finger_v"]  # which C's sin and cos have made
+    if i == 2000:
+        c.post({"ability.delay": 0.02})
+    step = c.step(sense, c.surfaces(x, 0.5))
+    assert step.trace.tobytes() == row.tobytes() and step.value.tobytes() == row["command"].tobytes(), i
+    v = step.value
+    x = x + 1e-3 * v
+assert [e.kind for e in c.events()] == ["taken"]
+c = ethd.Space()
+sense["time_ns"] = 0
+assert len(c.surfaces(x, 1)) == 0 and c.step(sense).status == 0
+assert c.step(sense, [((0.5, 0, 0), (1, 0, 0), (0, 0, 0), 3, -1)] * 65).safe and c.events()[0].kind == "fault"
+refuses("space.radius: found \"-1.0\", 0.0001 to 1 m is allowed", lambda: c.post({"space.radius": -1}))
+refuses("there is no [space]", lambda: ethd.Space("[contact]\nk_e = 3\n"))
+refuses("[space] is there; ethd.Space is its controller", lambda: ethd.Controller("[space]\n"))
+refuses("have: missing in the row; all fields of ethd.SPACE_SENSE", lambda: c.step(sense[["time_ns"]]), ValueError)
+refuses("x has the shape (2,)", lambda: c.surfaces((0, 0), 1), ValueError)
 
 # ---- a configuration, changes while it runs, events ----
 sense = np.zeros((), ethd.SENSE)

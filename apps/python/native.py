@@ -124,6 +124,29 @@ static int python_step(ethd_control *control, const char *sense, ethd_command *c
   memcpy(trace, &out, sizeof out);
   return status;
 }
+static int python_space_step(ethd_space *space, const char *sense, const char *surfaces, uint32_t count,
+                             ethd_space_command *command, char *trace) {
+  ethd_space_sense in;
+  ethd_space_trace out;
+  ethd_surface near[ETHD_SURFACES_MAX + 1];
+  if (count > ETHD_SURFACES_MAX) count = ETHD_SURFACES_MAX + 1; /* which a step refuses */
+  memcpy(&in, sense, sizeof in);
+  memcpy(near, surfaces, count * sizeof *near);
+  memset(&out, 0, sizeof out);
+  int status = ethd_space_step(space, &in, near, count, command, &out);
+  memcpy(trace, &out, sizeof out);
+  return status;
+}
+static size_t python_surfaces(const ethd_solids *solids, const double *x, double range, char *out, size_t room) {
+  ethd_surface near[ETHD_SURFACES_MAX];
+  ethd_vec3 at = {x[0], x[1], x[2]};
+  uint64_t was = flush();
+  size_t found = ethd_solids_surfaces(solids, NULL, at, range, near, room < ETHD_SURFACES_MAX ? room : ETHD_SURFACES_MAX);
+  restore(was);
+  if (found > room) found = room;
+  memcpy(out, near, found * sizeof *near);
+  return found;
+}
 static void python_nearest(const ethd_scene *scene, size_t count, const double *points, double *distance, double *normal,
                            int32_t *object) {
   ethd_scene_hint hint = {0};
@@ -142,7 +165,12 @@ static void python_nearest(const ethd_scene *scene, size_t count, const double *
 """
 HELPERS_DECLARED = """
 static char *const ETHD_VERSION;
+#define ETHD_SURFACES_MAX ...
+#define ETHD_NEAR_REFUSED ...
 int python_step(ethd_control *control, const char *sense, ethd_command *command, char *trace);
+int python_space_step(ethd_space *space, const char *sense, const char *surfaces, uint32_t count,
+                      ethd_space_command *command, char *trace);
+size_t python_surfaces(const ethd_solids *solids, const double *x, double range, char *out, size_t room);
 void python_nearest(const ethd_scene *scene, size_t count, const double *points, double *distance, double *normal,
                     int32_t *object);
 """

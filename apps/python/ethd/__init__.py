@@ -7,7 +7,9 @@
     c = r.controller()                      # one as the recording began; c.step(row) as you like
     s = ethd.read("study")                  # a folder of ethd-study: s.taps, s.participants, s.trials()
 
-SI units and radians, frame R_0: x right, y up. Nothing here is realtime.
+    s = ethd.Space("room.ini")              # a controller in space; s.step(sense, s.surfaces(x, 0.5))
+
+SI units and radians, frame R_0: x right, y up; in space the user's choice. Nothing here is realtime.
 """
 import os as _os
 import sys as _sys
@@ -22,17 +24,17 @@ except ImportError as error:
 finally:
     _sys.setdlopenflags(_before)
 
-from ethd.controller import SENSE, TRACE, UNITS, Controller, Event, Step
+from ethd.controller import SENSE, SPACE_SENSE, SPACE_TRACE, SPACE_UNITS, SURFACE, TRACE, UNITS, Controller, Event, Space, SpaceStep, Step
 from ethd.errors import Busy, Error
 from ethd.law import Law, Param, State, contact_law, laws, tracking_law, transition_law
 from ethd.reading import read
-from ethd.recording import Recording
+from ethd.recording import Recording, SpaceRecording
 from ethd.scene import Nearest, Scene
 from ethd.study import Study
 from ethd_programs.recording import RecordedEvent
 
 __version__: str = _native.ffi.string(_native.lib.ETHD_VERSION).decode()
 __all__ = [
-    "SENSE", "TRACE", "UNITS", "Busy", "Controller", "Error", "Event", "Law", "Nearest", "Param", "RecordedEvent", "Recording",
-    "Scene", "State", "Step", "Study", "contact_law", "laws", "read", "tracking_law", "transition_law",
+    "SENSE", "SPACE_SENSE", "SPACE_TRACE", "SPACE_UNITS", "SURFACE", "TRACE", "UNITS", "Busy", "Controller", "Error", "Event",
+    "Law", "Nearest", "Param", "RecordedEvent", "Recording", "Scene", "Space", "SpaceRecording", "SpaceStep", "State", "Step", "Study", "contact_law", "laws", "read", "tracking_law", "transition_law",
 ]

@@ -2,13 +2,13 @@
 import configparser
 import os
 import threading
-from typing import Any, Dict, Iterator, List, Optional, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ethd._native import ffi, lib
-from ethd.controller import TRACE, Controller, Step
+from ethd.controller import SPACE_TRACE, TRACE, Controller, Space, SpaceStep, Step, is_row, surfaces_of
 from ethd.errors import Error, check, text
 from ethd.law import Law
 from ethd_programs.files import there
@@ -34,7 +34,7 @@ def ini(path: str) -> configparser.ConfigParser:
     return found
 
 
-class Recording:
+class _Recorded:
     """A recording's folder. `tick` is mapped from its file, not copied; a file that the folder lacks is None. Reading runs
     nothing that the folder brings along: its plug-ins are opened by controller(), replay() and verify(), and only with
     plugins=True."""
@@ -57,14 +57,24 @@ class Recording:
     def _array(self, name: str) -> Optional[NDArray[Any]]:
         return mapped(os.path.join(self.folder, name)) if there(self.folder, name) else None
 
-    def _open(self) -> Controller:
-        if self.tick.dtype != TRACE:
+    def _make(self, config: str) -> Union[Controller, Space]:
+        raise NotImplementedError
+
+    def _fits(self) -> bool:
+        """Whether rows are of this version's columns, or an earlier one's."""
+        raise NotImplementedError
+
+    def _step(self, c: Any, row: np.void) -> Any:
+        return c.step(row)
+
+    def _open(self) -> Any:
+        if not self._fits():
             raise ValueError(f"{self.folder}/tick.npy: other columns than those of this version of libethd: it can't be replayed")
         if not there(self.folder, "events.csv"):
             raise FileNotFoundError(f"{self.folder}/events.csv: No such file, so what happened is unknown: it can't be replayed")
         self._refuse_missing([e for e in self.events if e.row == 0])
         try:
-            return Controller(os.path.join(self.folder, "config.ini"), self._plugins)
+            return self._make(os.path.join(self.folder, "config.ini"))
         except Error as e:
             raise Error(e.status, str(e).replace("plugins=True lets", PLUGINS + " lets")) from None
 
@@ -74,24 +84,19 @@ class Recording:
             if e.kind in ("thinned", "lost"):
                 raise Error(lib.ETHD_E_UNFINISHED, f"{self.folder}: from tick {e.row} on it can't be replayed: {e.detail}")
 
-    def controller(self) -> Controller:
-        """A controller set up as the recording began: its configuration, then the events before row 0. Error: ticks are
-        missing from the beginning, as in a recording of every tenth."""
+    def _controller(self) -> Any:
         c = self._open()
         _Replay(c).before([e for e in self.events if e.row == 0], first=True)
         return c
 
-    def replay(self, law: Optional[Law] = None) -> Iterator[Tuple[np.void, Step]]:
-        """Yields each recorded row with the library's present result for it; the recording's events act at their rows.
-        With `law` that one rules in the place of whatever law of its kind was recorded, with the recording's values for
-        parameters of the same name. The recorded device doesn't react to it. Error: ticks are missing before this row."""
+    def _replay(self, law: Optional[Law]) -> Iterator[Tuple[np.void, Any]]:
         c = self._open()
         replay, rows = _Replay(c, law), self._by_row()
         for i in range(len(self.tick)):
             self._refuse_missing(rows.get(i, []))
             if i == 0 or i in rows:
                 replay.before(rows.get(i, []), first=i == 0)
-            yield self.tick[i], c.step(self.tick[i])
+            yield self.tick[i], self._step(c, self.tick[i])
             c.events()
 
     def _by_row(self) -> Dict[int, List[RecordedEvent]]:
@@ -120,13 +125,59 @@ class Recording:
         return str(ffi.string(message).decode())
 
 
+class Recording(_Recorded):
+    __doc__ = _Recorded.__doc__
+
+    def _make(self, config: str) -> Controller:
+        return Controller(config, self._plugins)
+
+    def _fits(self) -> bool:
+        return is_row(self.tick.dtype)
+
+    def controller(self) -> Controller:
+        """A controller set up as the recording began: its configuration, then the events before row 0. Error: ticks are
+        missing from the beginning, as in a recording of every tenth."""
+        found: Controller = self._controller()
+        return found
+
+    def replay(self, law: Optional[Law] = None) -> Iterator[Tuple[np.void, Step]]:
+        """Yields each recorded row with the library's present result for it; the recording's events act at their rows.
+        With `law` that one rules in the place of whatever law of its kind was recorded, with the recording's values for
+        parameters of the same name. The recorded device doesn't react to it. Error: ticks are missing before this row."""
+        return self._replay(law)
+
+
+class SpaceRecording(_Recorded):
+    """A Recording of the front in space: its rows are of the dtype ethd.SPACE_TRACE, with the units of ethd.SPACE_UNITS, and its
+    controller is an ethd.Space."""
+
+    def _make(self, config: str) -> Space:
+        return Space(config, self._plugins)
+
+    def _fits(self) -> bool:
+        return self.tick.dtype == SPACE_TRACE
+
+    def _step(self, c: Any, row: np.void) -> Any:
+        return c.step(row, surfaces_of(row))
+
+    def controller(self) -> Space:
+        """As Recording.controller."""
+        found: Space = self._controller()
+        return found
+
+    def replay(self, law: Optional[Law] = None) -> Iterator[Tuple[np.void, SpaceStep]]:
+        """As Recording.replay; the surfaces are those that were recorded."""
+        return self._replay(law)
+
+
 class _Replay:
     """A row's events make one setup: with setup or start among them a fresh controller begins with it, else it is posted."""
 
-    def __init__(self, controller: Controller, law: Optional[Law] = None):
+    def __init__(self, controller: Union[Controller, Space], law: Optional[Law] = None):
         self.c = controller
         self.law = law
-        self.recorded = ffi.new("ethd_setup *", controller._setup[0])  # which has the recorded law, whatever rules in its place
+        self.kinds = {kind: does for kind, does in KINDS.items() if does not in ("hot", "taught") or not controller._is_space}
+        self.recorded = controller._copy(controller._setup[0])  # which has the recorded law, whatever rules in its place
         self.heat = ffi.new("double[2]")
         self.learned = ffi.new("double[]", TRACE["learnt"].shape[0])
 
@@ -134,14 +185,14 @@ class _Replay:
         c, done = self.c, {"fresh"} if first else set()
         for e in events:
             done.add(self._take(e, self.recorded))
-        setup = ffi.new("ethd_setup *", self.recorded[0])
+        setup = c._copy(self.recorded[0])
         if self.law:
             c._rule(setup, self.law)
         if done & {"fresh", "warm"} and not (done <= {"warm", "hot", "taught", ""} and not first):
             c._setup = setup
             c._create()
         elif "warm" in done:
-            lib.ethd_control_restart(c._control)
+            c._call("reset" if c._is_space else "restart", c._control)
         elif "changed" in done:
             c._post(setup)
         if "clear" in done:
@@ -153,20 +204,20 @@ class _Replay:
 
     def _take(self, e: RecordedEvent, setup: Any) -> str:
         if e.kind == "setup":
-            setup[0] = self.c._config.c.setup
+            setup[0] = getattr(self.c._config.c, self.c._member)
         if e.kind in ("setup", "transition", "contact", "tracking"):
             self.c._change(setup, ("transition" if e.kind == "setup" else e.kind) + ".law", e.detail)
         elif e.kind == "set":
             key, _, value = e.detail.partition(" ")
             self.c._change(setup, key, value)
-        elif e.kind == "heat":
+        elif e.kind == "heat" and "heat" in self.kinds:
             self._numbers(e, self.heat)
-        elif e.kind == "learned":
+        elif e.kind == "learned" and "learned" in self.kinds:
             self._numbers(e, self.learned)
         elif e.kind == "start":
             return "warm" if e.detail == "enabled" else "fresh"
-        elif e.kind not in KINDS:
-            raise ValueError(f"events.csv: row {e.row}: found the kind {e.kind!r}; {', '.join(KINDS)}, start are allowed")
+        elif e.kind not in self.kinds:
+            raise ValueError(f"events.csv: row {e.row}: found the kind {e.kind!r}; {', '.join(self.kinds)}, start are allowed")
         return KINDS[e.kind]
 
     def _numbers(self, e: RecordedEvent, to: Any) -> None:

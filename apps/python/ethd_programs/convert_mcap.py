@@ -1,12 +1,12 @@
 """A recording's ticks and events as MCAP (mcap.dev), each a message of JSON."""
 import json
 import math
-from typing import Any, Callable, Dict, Iterator, List
+from typing import Any, Callable, Dict, Iterator, List, Sequence
 
 from mcap.writer import Writer
 
 from ethd_programs.files import Output
-from ethd_programs.recording import FIELDS, RecordedEvent, Ticks, ahead, utc_offset
+from ethd_programs.recording import Field, RecordedEvent, Ticks, ahead, utc_offset
 
 _EVENT = {
     "type": "object",
@@ -14,11 +14,11 @@ _EVENT = {
 }
 
 
-def _tick_schema() -> Dict[str, Any]:
+def _tick_schema(fields: Sequence[Field]) -> Dict[str, Any]:
     def numbers(count: int) -> Dict[str, Any]:
         return {"type": "number"} if count == 1 else {"type": "array", "items": {"type": "number"}}
 
-    properties = {f.name: {"description": f.unit, **numbers(len(f.columns))} for f in FIELDS}
+    properties = {f.name: {"description": f.unit, **numbers(len(f.columns))} for f in fields}
     return {"type": "object", "properties": properties}
 
 
@@ -42,12 +42,12 @@ def _topic(writer: Writer, name: str, schema_name: str, schema: Dict[str, Any]) 
 
 
 def write(ticks: Ticks, events: List[RecordedEvent], out: str, folder: str, progress: Callable[[int, int], None]) -> None:
-    names = [f.name for f in FIELDS]
+    names = [f.name for f in ticks.fields]
     offset, last, shift, row, event, now = utc_offset(events), None, 0, 0, 0, 0
     with Output(out, folder) as file:
         writer = Writer(file)
         writer.start(library="libethd")
-        tick = _topic(writer, "/tick", "ethd.tick", _tick_schema())
+        tick = _topic(writer, "/tick", "ethd.tick", _tick_schema(ticks.fields))
         happened = _topic(writer, "/events", "ethd.event", _EVENT)
 
         def put_events(before: float, instant: int, published: int) -> None:

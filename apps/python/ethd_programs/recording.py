@@ -1,7 +1,7 @@
 """Recordings, the folders that the programs write (include/ethd/record.h), read in pieces."""
 import datetime
 import os
-from typing import Any, Iterator, List, NamedTuple, Optional, Tuple
+from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,19 +77,92 @@ FIELDS = (
     Field("tau", "Nm", ("tau1_Nm", "tau2_Nm")),
     Field("learnt", "1", tuple(f"learnt{i}" for i in range(1, 5))),
 )
+def _axes(name: str, unit: str) -> Tuple[str, ...]:
+    return tuple(name.format(axis) + unit for axis in "xyz")
+
+
+_NEAR = range(1, 17)
+
+#: The same of space (include/ethd/space.h).
+SPACE_FIELDS = (
+    Field("time_ns", "ns", ("t_s",)),
+    Field("have", "1", ("have",)),
+    Field("missed", "1", ("missed",)),
+    Field("step_ns", "ns", ("step_ns",)),
+    Field("faults", "1", ("faults",)),
+    Field("grave", "1", ("grave",)),
+    Field("x", "m", ("x_m", "y_m", "z_m")),
+    Field("v", "m/s", ("vx_mps", "vy_mps", "vz_mps")),
+    Field("normal", "1", _axes("normal_{}", ""), (16,)),
+    Field("finger", "m", _axes("finger_{}", "_m"), (1,)),
+    Field("finger_v", "m/s", _axes("finger_v{}", "_mps"), (1,)),
+    Field("sample_ns", "ns", ("t_reading_s",), (2,)),
+    Field("reading", "m", _axes("reading_{}", "_m"), (2,)),
+    Field("reading_v", "m/s", _axes("reading_v{}", "_mps"), (4,)),
+    Field("reading_noise", "m", ("reading_noise_m",), (2,)),
+    Field("reading_v_noise", "m/s", ("reading_v_noise_mps",), (4,)),
+    Field(
+        "ability",
+        "m/s, m/s2, s, kg, N, N",
+        ("able_speed_mps", "able_acceleration_mps2", "able_delay_s", "able_mass_kg", "able_force_N", "able_friction_N"),
+        (32,),
+    ),
+    Field("tick", "1", ("tick",)),
+    Field("fault", "1", ("fault",)),
+    Field("guard", "1", ("guard",)),
+    Field("swap", "1", ("swap",)),
+    Field("contacts", "1", ("contacts",)),
+    Field("overflow", "1", ("overflow",)),
+    Field("object", "1", ("object",)),
+    Field("state", "1", ("state",)),
+    Field("xf", "m", ("xf_m", "yf_m", "zf_m")),
+    Field("vf", "m/s", ("vxf_mps", "vyf_mps", "vzf_mps")),
+    Field("beta", "1", ("beta",)),
+    Field("fe", "N", _axes("fe{}", "_N")),
+    Field("fd", "N", _axes("fd{}", "_N")),
+    Field("eps", "m", ("eps_m",)),
+    Field("d_re", "m", ("d_re_m",)),
+    Field("d_fe", "m", ("d_fe_m",)),
+    Field("v_n", "m/s", ("v_n_mps",)),
+    Field("speed", "m/s", ("speed_mps",)),
+    Field("asked", "N, m/s", _axes("asked_{}", "")),
+    Field("command", "N, m/s", _axes("command_{}", "")),
+    Field("facing", "1", _axes("facing_{}", "")),
+    Field("learnt", "1", tuple(f"learnt{i}" for i in range(1, 5))),
+    Field("near", "1", ("near",)),
+    Field("near_point", "m", tuple(f"near{i}_{axis}_m" for i in _NEAR for axis in "xyz")),
+    Field("near_n", "1", tuple(f"near{i}_n{axis}" for i in _NEAR for axis in "xyz")),
+    Field("near_v", "m/s", tuple(f"near{i}_v{axis}_mps" for i in _NEAR for axis in "xyz")),
+    Field("near_id", "1", tuple(f"near{i}_id" for i in _NEAR)),
+    Field("near_material", "1", tuple(f"near{i}_material" for i in _NEAR)),
+)
 INTEGERS = {"time_ns", "have", "missed", "step_ns", "faults", "grave", "sample_ns", "tick", "fault", "guard", "swap", "queried",
-            "contacts", "overflow", "object", "body", "state"}  # fmt: skip
+            "contacts", "overflow", "object", "body", "state", "near", "near_id", "near_material"}  # fmt: skip
 
 
-def _dtype() -> "np.dtype[Any]":
+def _dtype(fields: Sequence[Field]) -> "np.dtype[Any]":
     def entry(f: Field) -> Tuple[Any, ...]:
         kind = "=i8" if f.name in INTEGERS else "=f8"
         return (f.name, kind, (len(f.columns),)) if len(f.columns) > 1 else (f.name, kind)
 
-    return np.dtype([entry(f) for f in FIELDS])
+    return np.dtype([entry(f) for f in fields])
 
 
-TICK = _dtype()
+def _newer() -> Set[str]:
+    """Fields that a recording of an earlier version may lack: what follows on finger_noise in the sense, and on learnt."""
+    names = [f.name for f in FIELDS]
+    tick = names.index("tick")
+    return {*names[names.index("finger_noise") : tick], *names[names.index("learnt") :]}
+
+
+def fields_of(dtype: "np.dtype[Any]") -> Tuple[Field, ...]:
+    """The fields that a recording's rows have, of the plane or of space; none: they are other rows."""
+    newer, has = _newer(), set(dtype.names or ())
+    for all_fields in FIELDS, SPACE_FIELDS:
+        fields = tuple(f for f in all_fields if f.name in has or all_fields is SPACE_FIELDS or f.name not in newer)
+        if dtype == _dtype(fields):
+            return fields
+    return ()
 
 
 class RecordedEvent(NamedTuple):
@@ -133,9 +206,11 @@ class Ticks:
             found = header(self._file)
         except (ValueError, EOFError, OverflowError) as e:
             raise Refusal(f"{self.path}: no array, or cut short: {e}") from None
-        if found.dtype != TICK or len(found.shape) != 1:
+        self.fields = fields_of(found.dtype)
+        self._dtype = found.dtype
+        if not self.fields or len(found.shape) != 1:
             raise Refusal(f"{self.path}: other columns than those of this version of libethd")
-        there_are = (os.fstat(self._file.fileno()).st_size - found.data) // TICK.itemsize
+        there_are = (os.fstat(self._file.fileno()).st_size - found.data) // self._dtype.itemsize
         self.count = found.shape[0]
         if there_are < self.count:
             raise Refusal(f"{self.path}: cut short: {there_are} rows of {self.count} are there")
@@ -143,7 +218,7 @@ class Ticks:
     def pieces(self) -> Iterator[NDArray[Any]]:
         left = self.count
         while left:
-            piece = np.fromfile(self._file, TICK, min(left, PIECE))
+            piece = np.fromfile(self._file, self._dtype, min(left, PIECE))
             if not len(piece):
                 raise Refusal(f"{self.path}: cut short while it was read")
             left -= len(piece)
