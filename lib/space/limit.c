@@ -28,6 +28,17 @@ static double highest(const ethd__space_tick *t, double d) {
   return d > 0 ? 2 * d / (late + sqrt(late * late + 2 * d / a)) : 0;
 }
 
+/* Returns the same for the ball, of a command that isn't longer than asked for: a way of l aside takes the effector
+   l^2 / (2 reach) farther from the ball's centre. */
+static double highest_in_ball(const ethd__space_tick *t, double d, ethd_vec3 asked) {
+  const ethd_space_setup *s = &t->plan->setup;
+  const double next = ethd_vec3_norm(t->state->last) + s->acceleration * since_last(t);
+  const double way =
+      t->core.dt * fmin(fmax(ethd_vec3_norm(asked), ethd_vec3_norm(t->state->last)), fmin(s->speed, next));
+  const double left = d - way * way / (2 * s->reach);
+  return left > 0 ? highest(t, left) : left / t->core.dt;
+}
+
 /* Gives the distances to the workspace's faces, and their outward normals; returns how many there are. */
 static int faces(const ethd__space_tick *t, ethd_vec3 x, double d[ETHD__FACES], ethd_vec3 n[ETHD__FACES]) {
   const ethd_space_setup *s = &t->plan->setup;
@@ -37,10 +48,14 @@ static int faces(const ethd__space_tick *t, ethd_vec3 x, double d[ETHD__FACES], 
     const double at[3] = {x.x, x.y, x.z};
     for (int i = 0; i < 3; i++) {
       const ethd_vec3 axis = {i == 0, i == 1, i == 2};
-      d[count] = at[i] - low[i];
-      n[count++] = ethd_vec3_scale(-1, axis);
-      d[count] = high[i] - at[i];
-      n[count++] = axis;
+      if (low[i] > -(double)INFINITY) {
+        d[count] = at[i] - low[i];
+        n[count++] = ethd_vec3_scale(-1, axis);
+      }
+      if (high[i] < (double)INFINITY) {
+        d[count] = high[i] - at[i];
+        n[count++] = axis;
+      }
     }
   }
   if (t->plan->has_ball) {
@@ -67,7 +82,7 @@ static int32_t breach(const ethd__space_tick *t, const double *d, int count) {
 
 /* Cuts u to a length by its part across the first `count` of these directions, which are perpendicular: the change along
    them was needed. That part was within the length before and is only cut back to it, so u changes no more than before. */
-static ethd_vec3 cut_across(ethd_vec3 u, double most, const ethd_vec3 own[3], int count) {
+static ethd_vec3 cut_across(ethd_vec3 u, double most, const ethd_vec3 *own, int count) {
   ethd_vec3 along = {0, 0, 0};
   if (ethd_vec3_norm(u) <= most) return u;
   for (int i = 0; i < count; i++) along = ethd_vec3_add(along, ethd_vec3_scale(ethd_vec3_dot(u, own[i]), own[i]));
@@ -78,16 +93,20 @@ static ethd_vec3 cut_across(ethd_vec3 u, double most, const ethd_vec3 own[3], in
   return ethd_vec3_add(along, ethd_vec3_scale(left / ethd_vec3_norm(across), across));
 }
 
-/* Goes from `from` towards `to` by at most `most`, first along the normals of the bounds that `from` doesn't satisfy, in
-   their order; between two velocities that satisfy a bound there is none that doesn't. */
-static ethd_vec3 towards(const ethd__space_tick *t, ethd_vec3 to, const struct ethd__bound *bounds, int count) {
+/* The bounds of a command: the workspace's faces come first. */
+typedef struct limits {
+  struct ethd__bound at[BOUNDS];
+  int count, faces;
+} limits;
+
+/* Goes from the last command towards `to` by at most the acceleration, first along the normals of those bounds that are
+   `due` (bits), in their order. */
+static ethd_vec3 go(const ethd__space_tick *t, ethd_vec3 to, const limits *l, unsigned due) {
   ethd_vec3 from = t->state->last, left = ethd_vec3_sub(to, from), own[3];
   double most = t->plan->setup.acceleration * since_last(t);
-  const ethd_vec3 start = from;
   int found = 0;
-  for (int i = 0; i < count && found < 3; i++) {
-    if (!bounds[i].held && ethd_vec3_dot(bounds[i].n, start) <= bounds[i].speed) continue;
-    ethd_vec3 e = bounds[i].n;
+  for (; due && found < 3; due &= due - 1) {
+    ethd_vec3 e = l->at[__builtin_ctz(due)].n;
     for (int k = 0; k < found; k++) e = ethd_vec3_sub(e, ethd_vec3_scale(ethd_vec3_dot(e, own[k]), own[k]));
     const double length = ethd_vec3_norm(e);
     if (length < 1e-6) continue;
@@ -104,23 +123,50 @@ static ethd_vec3 towards(const ethd__space_tick *t, ethd_vec3 to, const struct e
                     own, found);
 }
 
+static bool satisfies(ethd_vec3 u, const struct ethd__bound *b) { return ethd_vec3_dot(b->n, u) <= b->speed; }
+
+/* Goes towards `to` as far as the acceleration allows, first along the normals of the bounds that the last command
+   doesn't satisfy. Between two velocities that satisfy a bound there is none that doesn't; but the way along other
+   normals leads aside, so a face that it would cross comes first, too. */
+static ethd_vec3 towards(const ethd__space_tick *t, ethd_vec3 to, const limits *l) {
+  unsigned due = 0, crossed;
+  ethd_vec3 u;
+  for (int i = 0; i < l->count; i++) due |= (unsigned)(l->at[i].held || !satisfies(t->state->last, &l->at[i])) << i;
+  do {
+    u = go(t, to, l, due);
+    crossed = 0;
+    for (int i = 0; i < l->faces; i++) crossed |= (unsigned)(!satisfies(u, &l->at[i])) << i;
+    crossed &= ~due;
+    due |= crossed;
+  } while (crossed);
+  return u;
+}
+
+/* Cuts a velocity to the limit of its speed, and keeps the inward part that it needs along the ball. */
+static ethd_vec3 slower(const ethd__space_tick *t, ethd_vec3 u, const limits *l) {
+  const double most = t->plan->setup.speed;
+  const ethd_vec3 cut = ethd_vec3_scale(most / ethd_vec3_norm(u), u);
+  if (!t->plan->has_ball || satisfies(cut, &l->at[l->faces - 1])) return cut;
+  return cut_across(u, most, &l->at[l->faces - 1].n, 1);
+}
+
 static ethd_vec3 limit_velocity(ethd__space_tick *t, ethd_vec3 asked, const double *d, const ethd_vec3 *n, int faces_) {
   const ethd_space_setup *s = &t->plan->setup;
   const ethd__touched *touched = &t->core.touched;
-  struct ethd__bound bounds[BOUNDS];
-  int count = 0;
-  for (int i = 0; i < faces_; i++) bounds[count++] = (struct ethd__bound){n[i], highest(t, d[i]), false};
-  for (int i = 0; i < touched->bounds; i++) bounds[count++] = touched->bound[i];
-  ethd_vec3 u = ethd__space_within(asked, bounds, count);
-  if (faces_) u = ethd__space_within(u, bounds, faces_);
-  const double speed = ethd_vec3_norm(u);
-  if (speed > s->speed) {
-    u = ethd_vec3_scale(s->speed / speed, u);
+  limits l;
+  l.count = l.faces = faces_;
+  for (int i = 0; i < faces_; i++) l.at[i] = (struct ethd__bound){n[i], highest(t, d[i]), false};
+  if (t->plan->has_ball) l.at[faces_ - 1].speed = highest_in_ball(t, d[faces_ - 1], asked);
+  for (int i = 0; i < touched->bounds; i++) l.at[l.count++] = touched->bound[i];
+  ethd_vec3 u = ethd__space_within(asked, l.at, l.count);
+  if (faces_) u = ethd__space_within(u, l.at, faces_);
+  if (ethd_vec3_norm(u) > s->speed) {
+    u = slower(t, u, &l);
     t->trace->guard |= ETHD_GUARD_TORQUE;
   }
   if (ethd_vec3_norm(ethd_vec3_sub(u, t->state->last)) <= s->acceleration * since_last(t)) return u;
   t->trace->guard |= ETHD_GUARD_RATE;
-  return towards(t, u, bounds, count);
+  return towards(t, u, &l);
 }
 
 static ethd_vec3 stop_velocity(ethd__space_tick *t) {
@@ -128,7 +174,7 @@ static ethd_vec3 stop_velocity(ethd__space_tick *t) {
   const double most = t->plan->setup.acceleration * since_last(t);
   const bool there = ethd_vec3_norm(t->state->last) <= most;
   if (there && t->state->stopping) t->state->stopped = 1;
-  return t->state->stopped || there ? zero : towards(t, zero, NULL, 0);
+  return t->state->stopped || there ? zero : go(t, zero, NULL, 0);
 }
 
 /* ---- force ---- */
