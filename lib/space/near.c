@@ -119,7 +119,7 @@ static void facts(const void *front, const ethd_contact *contact, ethd_facts *ou
   out->finger_age = given || state->filter.started ? 0 : (double)NAN;
   out->finger_a = (double)NAN;
   out->memory = t->state->core.memory;
-  out->acceleration = fmin(a->acceleration, by_velocity ? t->plan->setup.acceleration : (double)INFINITY);
+  out->acceleration = by_velocity ? fmin(a->acceleration, t->plan->setup.acceleration) : a->acceleration;
 }
 
 bool ethd__space_touch(ethd__space_tick *t) {
