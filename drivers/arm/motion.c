@@ -3,9 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-#define LEVER 0.2  /* m: by which a plate's turn, rad, counts beside its point's way, m */
-#define DRAWN 0.1  /* of a joint's speed: the posture draws no faster */
-#define NEAR 1e-14 /* m */
+#define LEVER 0.2   /* m: by which a plate's turn, rad, counts beside its point's way, m */
+#define TURN_MOST 1 /* rad/s: a plate turns no faster, so that its turn leaves the joints room for its way */
+#define DRAWN 0.1   /* of a joint's speed: the posture draws no faster */
+#define NEAR 1e-14  /* m */
 #define CORRECTIONS 4
 #define ALMOST_NONE 1e-9 /* rad or m for each m along n: less doesn't bound */
 
@@ -59,10 +60,9 @@ static void task_of(const ethd__arm_motion *m, ethd_vec3 v, const double *normal
   ethd_vec3 turn = {0, 0, 0};
   ethd_vec3_put(v, task);
   if (normal) {
-    const ethd_vec3 n = ethd_vec3_of(normal);
-    const double sine = ethd_vec3_norm(ethd_vec3_cross(m->tool.facing, n));
-    const double full = ethd_vec3_dot(m->tool.facing, n) < 0 && sine > NEAR ? 1 / sine : 1; /* beyond a right angle */
-    turn = ethd_vec3_scale(full * m->table->turn, ethd_vec3_cross(m->tool.facing, n));
+    const ethd_vec3 n = ethd_vec3_of(normal), axis = ethd_vec3_cross(m->tool.facing, n);
+    const double sine = ethd_vec3_norm(axis), far = ethd_vec3_dot(m->tool.facing, n) < 0 ? 1 : sine;
+    if (sine > NEAR) turn = ethd_vec3_scale(fmin(m->table->turn * far, TURN_MOST) / sine, axis);
   }
   for (int k = 0; k < 2; k++) task[3 + k] = LEVER * ethd_vec3_dot(ethd_vec3_of(m->across[k]), turn);
 }
@@ -110,8 +110,12 @@ ethd_joints_ruling ethd__arm_motion_step(ethd__arm_motion *m, ethd_vec3 v, const
 }
 
 void ethd__arm_motion_stop(ethd__arm_motion *m) {
-  double dq[ETHD_JOINTS_MAX] = {0};
-  (void)ethd_guard_joints(&m->table->limits, m->q, m->dq, dq);
+  const ethd_joint_limits *l = &m->table->limits;
+  double dq[ETHD_JOINTS_MAX], periods = 1;
+  for (uint32_t i = 0; i < l->count; i++)
+    periods = fmax(periods, fabs(m->dq[i]) / (l->joint[i].acceleration * l->period));
+  for (uint32_t i = 0; i < l->count; i++) dq[i] = m->dq[i] * (1 - 1 / periods);
+  (void)ethd_guard_joints(l, m->q, m->dq, dq);
   go(m, dq);
 }
 

@@ -31,7 +31,8 @@ void ethd__arm_motion_start(const ethd__arm_table *table, const double *q, ethd_
 /* Moves by one period towards v, m/s; a plate turns towards `normal`, a unit vector, or keeps where it faces: NULL. */
 ethd_joints_ruling ethd__arm_motion_step(ethd__arm_motion *m, ethd_vec3 v, const double *normal) ETHD_RT;
 
-/* Moves by one period, with each joint slowing down as quickly as it may. */
+/* Moves by one period and slows down, all joints in proportion, as quickly as the slowest to stop allows: the tool stays
+   on its way. */
 void ethd__arm_motion_stop(ethd__arm_motion *m) ETHD_RT;
 
 /* Returns what the arm can do here along the unit vector n: its slowest joint says. `delay` is the dead time and the lag

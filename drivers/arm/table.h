@@ -24,7 +24,8 @@
      [inverse]                   inverse.h and motion.h
      singular = 0.03             m
      pull = 1                    1/s, to the posture
-     turn = 5                    1/s, of a plate to the normal that it is told to face; 0: it isn't turned
+     turn = 5                    1/s, of a plate to the normal that it is told to face, at most 1 rad/s;
+                                 0: it isn't turned
 
    Numbers without a default must be given. */
 #ifndef ETHD__ARM_TABLE_H

@@ -145,7 +145,8 @@ TEST(test_turn) {
   ck_assert_double_le(apart(m.tool.x, from), 1e-12);
 }
 
-/* A stop takes v / a of the joint that needs longest, and ends at rest. */
+/* A stop takes v / a of the joint that needs longest, ends at rest, and doesn't leave the line that the tool is on but by
+   its joints' turn on it. */
 TEST(test_stop) {
   begin("ur5e", NULL);
   for (int k = 0; k < 200; k++) (void)ethd__arm_motion_step(&m, (ethd_vec3){0, 0.3, 0.1}, NULL);
@@ -153,10 +154,14 @@ TEST(test_stop) {
   for (uint32_t i = 0; i < 6; i++) longest = fmax(longest, fabs(m.dq[i]) / table.limits.joint[i].acceleration);
   ck_assert_double_ge(longest, 0.01);
   int periods = 0;
+  const ethd_vec3 from = m.tool.x, way = {0, 0.3, 0.1};
   for (double most = 1; most > 0; periods++) {
     ethd__arm_motion_stop(&m);
     most = 0;
     for (uint32_t i = 0; i < 6; i++) most = fmax(most, fabs(m.dq[i]));
   }
   ck_assert_int_eq(periods, (int)ceil(longest / table.limits.period - 1e-9));
+  const ethd_vec3 off = ethd_vec3_cross(ethd_vec3_sub(m.tool.x, from), way);
+  ck_assert_double_le(ethd_vec3_norm(off) / ethd_vec3_norm(way), 1e-4);
+  ck_assert_double_ge(apart(m.tool.x, from), 1e-3);
 }
