@@ -255,6 +255,7 @@ const text_reader text_readers[] = {
     {"map", TEXT(MAP_TCP), readers_map_words, readers_map, NULL, 0},
     {"serial", TEXT(MAP_SERIAL), readers_map_words, readers_map, NULL, 0},
     {"values", TEXT(MAP_VALUES), readers_map_words, readers_map, NULL, 0},
+    {"arm", TEXT(ARM_TABLE), readers_arm_words, readers_arm, NULL, 0},
     {"inject",
      TEXT("0.500 q1 freeze for=0.1 # why\n612t rays nan for=inf\n0.7 reading delay by=0.02 for=0.2\n0.9 fault9 set\n"),
      script_words, read_script, grow_script, 128},

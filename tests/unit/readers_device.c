@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "arm/motion.h"
 #include "proximity_ring/decoder.h"
 #include "servo/plan.h"
 #include "servo/words.h"
@@ -152,3 +153,22 @@ const char *const readers_map_words[] = {"\n[register torque1]\n",
                                          "=write c 65535",
                                          "=torque1",
                                          NULL};
+
+/* ---- arms ---- */
+
+int readers_arm(const char *text, size_t length) {
+  ethd__arm_table table;
+  ethd__arm_motion motion;
+  char message[ETHD_MESSAGE_MAX] = "";
+  const ethd_status status = ethd__arm_table_parse(text, length, "x", &table, message);
+  if (status != ETHD_OK)
+    return status < 0 && message[0] == 'x' && message[1] == ':' && !strpbrk(message, "\n\r\033") ? 0 : -1;
+  ethd__arm_motion_start(&table, NULL, &motion);
+  (void)ethd__arm_motion_step(&motion, (ethd_vec3){0.1, -0.1, 0.1}, NULL);
+  const ethd_vec3 x = motion.tool.x;
+  return ethd_joint_limits_check(&table.limits, NULL) == ETHD_OK && isfinite(x.x + x.y + x.z) ? 1 : -1;
+}
+
+const char *const readers_arm_words[] = {"\n[joint3]\n", "[joint8]", "\n",     "=", "nan",      "inf",
+                                         "1e999",        "-6.3",     "6.3",    "0", "[base]\n", "a = 3\n",
+                                         "; c",          "standard", "1e-300", NULL};

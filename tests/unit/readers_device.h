@@ -13,6 +13,17 @@ extern const char *const readers_frame_words[];
 int readers_map(const char *text, size_t length);
 extern const char *const readers_map_words[];
 
+/* The table of an arm that is taken can be used: its limits are sound, and at its posture the tool has a place. */
+int readers_arm(const char *text, size_t length);
+extern const char *const readers_arm_words[];
+
+#define ARM_TABLE                                                                                                   \
+  "[arm]\nconvention = modified\nsafe = brakes\n[joint1]\nd = 0.3\nleast = -2\nmost = 2\nspeed = 2\n"               \
+  "acceleration = 10\ntorque = 9\nposture = 0.5\n[joint2]\na = 0.2\nalpha = 1.5\noffset = 0.1\nleast = -1\n"        \
+  "most = 1\nspeed = 2\nacceleration = 10\ntorque = 9\nposture = -0.5\n[base]\nx = 1\nyaw = 0.3\n[tool]\nz = 0.1\n" \
+  "facing_z = -1\n[servo]\nfrequency = 100\ndamping = 0.7\ndelay = 0.03\nrate = 500\n"                              \
+  "[inverse]\nsingular = 0.02\npull = 1\nturn = 5\n"
+
 #define MAP_TORQUE "[register torque1]\ndirection=write\naddress=0\ntype=i16\nunit=Nm\nmin=-1\nmax=1\n"
 #define MAP_INTEGER(name, address, more) "[register " name "]\ndirection=read\naddress=" address "\ntype=u16\n" more
 
