@@ -21,7 +21,7 @@ const ethd_param ethd__counter_params[ETHD__COUNTER_PARAMS] = {
     [ETHD__COUNTER_FREEZE_TORQUE] = {"freeze_torque", "Nm", 1e-6, (double)INFINITY, 0.4,
                                      "change of torque that must move a joint: four times its friction; inf: no check"},
     [ETHD__COUNTER_FREEZE_TIME] = {"freeze_time", "s", 1e-3, 10, 0.045,
-                                   "time in which that change must move the joint"},
+                                   "longest time until that change moves the joint"},
     [ETHD__COUNTER_REVERSE_TORQUE] = {"reverse_torque", "Nm", 1e-6, (double)INFINITY, (double)INFINITY,
                                       "opposing torque against which a joint can't gain speed; inf: no check"},
     [ETHD__COUNTER_REVERSE_TIME] = {"reverse_time", "s", 1e-3, 10, 0.010,

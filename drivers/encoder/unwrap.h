@@ -87,7 +87,7 @@ typedef struct ethd__encoder {
 static inline uint64_t ethd__count_ceiling(uint32_t width) { return UINT64_MAX >> (64 - width); }
 
 /* Checks a definition against the period of its samples, s: ETHD_E_RANGE or ETHD_E_NOT_FINITE with the field's name.
-   Refuses a ceiling of which a joint at speed_max passes a half or more in one period. [main] */
+   Refuses a ceiling if a joint at speed_max passes half of it or more in one period. [main] */
 ETHD_MUST_CHECK ethd_status ethd__encoder_check(const ethd__encoder_def *def, double period, ethd_error *error);
 
 /* True when `inertia` and the setup's mass at the ring along the joint's axis (0, 1) differ by a factor of two or more;

@@ -9,7 +9,7 @@
 #define NOISE_MAX 1.0      /* m */
 #define BACK_NS 1000000000 /* no network holds a datagram back for so long: the sender's clock jumped back */
 #define AHEAD_NS 50000000  /* nor is one so much quicker than all before: it jumped ahead */
-#define ORDER_MAX 1000     /* exposures by which others may overtake a datagram; if more, the sender began anew */
+#define ORDER_MAX 1000     /* exposures that may overtake a datagram; if more do, the sender has restarted */
 
 enum { AT_SEQ = 4, AT_TIME = 8, AT_X = 16, AT_Y = 24, AT_NOISE = 32, AT_FLAGS = 40, AT_CRC = 42 };
 

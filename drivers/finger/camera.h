@@ -46,7 +46,7 @@ void ethd__exposure_encode(const ethd__exposure *exposure, uint8_t out[ETHD__EXP
 
 enum {
   ETHD__CAMERA_BLOCK = 128,
-  ETHD__CAMERA_UNSETTLED = 4 /* exposures by which a clock that jumped is placed, and which make no reading */
+  ETHD__CAMERA_UNSETTLED = 4 /* exposures that place a clock after a jump; they make no reading */
 };
 
 /* A clock that begins is zero except for `delay`. */

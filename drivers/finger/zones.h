@@ -1,4 +1,4 @@
-/* Finds the finger's centre in a ring of on-off light barriers by which of them are lit.
+/* Finds the finger's centre in a ring of on-off light barriers from the set of lit ones.
 
         .-1-.       Barrier k looks from the ring's inner circle at angle 2 pi k / n (x axis = 0,
        2 (o) 0      counter-clockwise) to its centre, and is lit while the finger's surface is nearer than

@@ -9,7 +9,7 @@
 #include "inject/values.h"
 
 #define COMMANDS_MAX 1024 /* commands that a delay may hold back; a power of two */
-#define READINGS_MAX 64   /* readings, likewise */
+#define READINGS_MAX 64   /* readings that wait */
 
 typedef struct stamped {
   int64_t t;

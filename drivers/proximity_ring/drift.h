@@ -29,7 +29,7 @@ typedef struct ethd__drift {
 ETHD_MUST_CHECK ethd_status ethd__drift_prepare(double ring_radius, double finger_radius, ethd__drift *out,
                                                 ethd_error *error);
 
-/* Takes a good frame with its rays, m, of which those that are NaN don't count. [rt] */
+/* Takes a good frame with its rays, m; NaN rays don't count. [rt] */
 void ethd__drift_step(ethd__drift *drift, const ethd__calibration *calibration, const ethd__ring_frame *frame,
                       const double rays[ETHD_RAYS]) ETHD_RT;
 

@@ -13,7 +13,7 @@ enum { ETHD__EMPTY_FRAMES = 60 }; /* 0.2 s */
 /* All zero at first. */
 typedef struct ethd__empty {
   uint32_t frames;
-  uint32_t seen[ETHD_RAYS]; /* frames in which the sensor counted */
+  uint32_t seen[ETHD_RAYS]; /* frames with a count of the sensor */
   double sum[ETHD_RAYS];
 } ethd__empty;
 

@@ -41,7 +41,7 @@ typedef struct ethd__receiver {
   int64_t last_ns;  /* sample_ns of the last reading; 0: there was none */
 } ethd__receiver;
 
-/* Takes the next reading from the bytes from *at to `end`, of which the last arrived at arrival_ns, and moves *at
+/* Takes the next reading from the bytes from *at to `end`; the last byte arrived at arrival_ns; moves *at
    behind it. False: there is no reading, and *at == end. */
 bool ethd__receiver_next(ethd__receiver *receiver, const uint8_t **at, const uint8_t *end, int64_t arrival_ns,
                          ethd__ring_reading *out) ETHD_RT;

@@ -42,7 +42,7 @@ typedef struct ethd__servo_axis {
 typedef struct ethd__servo_feedback {
   ethd__servo_axis axes[2];
   bool absolute[2];                /* the position means the same angle after the drive lost its power */
-  bool homing;                     /* a search runs, in which the encoders aren't watched against the torque */
+  bool homing;                     /* a search runs; the encoders aren't watched against the torque then */
   double home[2];                  /* rad: where the joints stand at the first sample; NaN: as the register says */
   double count;                    /* the last value of reading_count */
   uint32_t rows[ETHD_FAULT_COUNT]; /* how often the encoders' rows were seen */

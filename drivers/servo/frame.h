@@ -24,7 +24,7 @@ void ethd__servo_frame_write(const ethd__servo_map *map, ethd__servo_span to, co
 void ethd__servo_frame_both(const ethd__servo_map *map, ethd__servo_span to, const uint16_t *words,
                             ethd__servo_span from, ethd__servo_frame *out);
 
-/* Gives a question its number, by which its answer is known; does nothing for rtu, which has none. [any] */
+/* Gives a question its number, which its answer repeats; does nothing for rtu, which has none. [any] */
 void ethd__servo_frame_number(const ethd__servo_map *map, uint16_t number, ethd__servo_frame *question);
 
 /* True while the bytes so far can be the beginning of an answer: they have the number, the unit and the function that

@@ -83,7 +83,7 @@ static int spare(void) {
   return is;
 }
 
-/* A signal by which a terminal or a service manager ends the program must not end this process before it. */
+/* A signal from a terminal or a service manager that ends the program must not end this process first. */
 static void settle(void) {
   const struct sched_param param = {.sched_priority = PRIORITY};
   sigset_t none;

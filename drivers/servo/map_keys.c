@@ -96,7 +96,7 @@ static const ethd__key_row keys[] = {
     {{"freeze_torque", "Nm", 1e-6, 1e6, 0, "change of torque that must move a joint: over twice its friction"},
      AT(register, freeze_torque),
      NULL},
-    {{"freeze_time", "s", 1e-3, 10, 0.05, "time in which that change must move the joint"},
+    {{"freeze_time", "s", 1e-3, 10, 0.05, "longest time until that change moves the joint"},
      AT(register, freeze_time),
      NULL},
     {{"reverse_torque", "Nm", 1e-6, 1e6, 0,

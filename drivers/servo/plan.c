@@ -32,7 +32,7 @@ static bool joins(const ethd__servo_map *map, const ethd__servo_block *b, const 
   return r->address <= s->address + s->count + gap && r->address + ethd__servo_words(r) - s->address <= most;
 }
 
-/* True when exchanges come in which both questions are due. */
+/* True when both questions fall due in the same exchange. */
 static bool meet(const ethd__servo_block *a, uint32_t every, uint32_t phase) {
   uint32_t common = every;
   for (uint32_t rest = a->every; rest;) {
@@ -43,7 +43,7 @@ static bool meet(const ethd__servo_block *a, uint32_t every, uint32_t phase) {
   return a->phase % common == phase % common;
 }
 
-/* The phase in which a slow question meets the fewest of those before it. */
+/* The phase that puts a slow question on the fewest exchanges of earlier ones. */
 static uint32_t spread(const ethd__servo_block *blocks, uint32_t n, uint32_t every) {
   uint32_t best = 0, least = UINT32_MAX;
   for (uint32_t phase = 0; phase < every; phase++) {

@@ -44,7 +44,7 @@ static void add_reading(ethd__servo_device *d, int64_t now_ns, ethd_sense *out) 
   out->centre[1] = s->reading[1];
 }
 
-/* The fault bit of old feedback; not in the first moments after a start, in which the threads come up. */
+/* The fault bit of old feedback; not in the first moments after a start, while the threads come up. */
 static int64_t is_old(ethd__servo_device *d, int64_t now_ns) {
   if (d->seen_epoch != d->newest.epoch) {
     d->seen_epoch = d->newest.epoch;

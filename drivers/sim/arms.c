@@ -6,7 +6,7 @@
 #include "sim/terms.h"
 
 #define RUBBING 10.0   /* tanh is +-1 within 4e-9 beyond it */
-#define TURN 2.0       /* by which its argument may change in a step that comes nearer to 0 */
+#define TURN 2.0       /* largest change of its argument in a step towards 0 */
 #define SHORTEST 1e-12 /* of the rest of the step: a turn within less, or a NaN, isn't followed */
 
 typedef struct kind {

@@ -25,7 +25,7 @@ enum {
   ETHD__STREAM_CENTRE_X, /* counter: reading */
   ETHD__STREAM_CENTRE_Y,
   ETHD__STREAM_RAY,                          /* and the 15 after it */
-  ETHD__STREAM_ZONE = ETHD__STREAM_RAY + 16, /* likewise */
+  ETHD__STREAM_ZONE = ETHD__STREAM_RAY + 16, /* one for each barrier */
   ETHD__STREAM_NAIL = ETHD__STREAM_ZONE + 16
 };
 

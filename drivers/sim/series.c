@@ -111,7 +111,7 @@ ETHD__INLINE ethd__two rub(expansion *w, int k) {
   return w->friction * w->rub[k] + w->viscous * w->slip[k];
 }
 
-/* The cases in which plants differ; the series are compiled for each of them. `touch` changes from step to step. */
+/* Plants differ in these cases; the series are compiled for each. `touch` changes from step to step. */
 typedef struct physics {
   bool serial, compliant, coupled;
   ethd__touch touch;

@@ -18,7 +18,7 @@ typedef struct ethd__series {
   ethd__two aside[ETHD__TERMS], aside_v[ETHD__TERMS]; /* of the finger from its path */
   ethd__two hand[ETHD__TERMS];
   ethd__two beyond[ETHD__TERMS];  /* apart: (distance^2 - gap^2)/2; touching: p; each twice */
-  ethd__two leaving[ETHD__TERMS]; /* touching: 1 + c p_dot, likewise */
+  ethd__two leaving[ETHD__TERMS]; /* touching: the terms of 1 + c p_dot */
 } ethd__series;
 
 /* Computes the motion from this state on, for `step` or as much of it as the tolerance allows. `hand` is the path's

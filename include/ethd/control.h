@@ -51,7 +51,7 @@ typedef struct ethd_setup {
   double velocity_p[ETHD_PARAMS_MAX];
   ethd_fit_method fit;
   double fit_p[ETHD_PARAMS_MAX];
-  double ray_lag[ETHD_RAYS]; /* s by which ray k was measured before sample_ns, -0.01 to 0.01 */
+  double ray_lag[ETHD_RAYS]; /* s from ray k's measurement to sample_ns, -0.01 to 0.01 */
   ethd_filter_method filter;
   double filter_p[ETHD_PARAMS_MAX];
 

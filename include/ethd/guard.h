@@ -61,7 +61,7 @@ typedef struct ethd_limits {
   double stop_time;      /* s: a stop that lasts longer ends without torque, > 0; INFINITY: ETHD_STOP_TIME */
 } ethd_limits;
 
-/* A row for each limit, by which they are read, written and compared. */
+/* A row for each limit: readers, writers and comparisons use it. */
 typedef enum ethd_limit_kind {
   ETHD_LIMIT_MOST,  /* a smaller number is stricter; INFINITY is no limit */
   ETHD_LIMIT_LEAST, /* a larger number is stricter; the row's min is no limit */

@@ -55,7 +55,7 @@ typedef struct ethd_law {
 
 /* Which of a law's parameters are the gains of its loop, by name; NULL: the law has no such gain. Of tracking they are a
    stiffness and a damping of each joint (Nm/rad, Nms/rad), of a contact law those of the wall (N/m, Ns/m), and of a
-   transition law the damping by which it brakes (Ns/m). ethd-check judges the loop by them. */
+   transition law the damping of its braking (Ns/m). ethd-check judges the loop by them. */
 typedef struct ethd_gains {
   const char *stiffness, *damping;
 } ethd_gains;
@@ -115,7 +115,7 @@ typedef struct ethd_facts {
   double friction;      /* N: Coulomb friction along n */
   double viscous;       /* Ns/m */
   double delay;         /* s from the joint sample to the force */
-  double lag;           /* s by which v is late (ethd_velocity_lag) */
+  double lag;           /* s: delay of v (ethd_velocity_lag) */
   double ring_radius;   /* R_r, m */
   double finger_radius; /* R_f, m */
   double finger_age;    /* s: how long ago the finger was where its estimate shows it; NaN: it hasn't been seen */

@@ -105,7 +105,7 @@ typedef struct ethd_loop_def {
   double gap;               /* s, at least a period: longer lateness, silence and older joint samples are faults;
                             INFINITY: lateness is only counted. The device's own limit holds too */
   double heartbeat;         /* s, at least a period: the longest time between two beats; INFINITY: none is needed */
-  double soft_start;        /* s, 0 to 10: time in which the torque's share rises from 0 to 1 after enabling */
+  double soft_start;        /* s, 0 to 10: rise time of the torque's share from 0 to 1 after enabling */
   size_t stack;             /* bytes of the loop's stack, 65536 to 2^26; thread-local memory comes on top */
   uint32_t rows;            /* of the ring, a power of two up to 2^20; 0: no rows are kept */
   int64_t *clock;           /* NULL: the system's. Else a virtual clock, ns: the loop sets it to each tick's

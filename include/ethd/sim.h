@@ -62,7 +62,7 @@ typedef struct ethd_plant {
   /* of the sensors that a plant file doesn't describe; ethd_plant_finger fills them */
   int32_t zones;          /* light barriers, 8 to 16 */
   double zone_reach;      /* m: a barrier is on while the finger is nearer */
-  double zone_hysteresis; /* share of zone_reach by which it switches off further out */
+  double zone_hysteresis; /* share of zone_reach between switching on and, further out, switching off */
   double nail_angle;      /* rad: toward the sensor that sees the plate */
   double nail_step;       /* m: one step of its converter */
 } ethd_plant;

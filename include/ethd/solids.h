@@ -56,7 +56,7 @@ ETHD_API bool ethd_body_pose3_is_valid(const ethd_body_pose3 *pose) ETHD_RT;
 
    id is the object's number in the text, from 0, and material an index of ethd_solids_material. A world of several
    solids needs ids that differ: its owner adds to those of each the counts of all before (ethd_solids_describe), to
-   materials likewise, unless they are -1. [any, rt-safe] */
+   materials count in the same way, unless they are -1. [any, rt-safe] */
 ETHD_API size_t ethd_solids_surfaces(const ethd_solids *solids, const ethd_body_pose3 *pose, ethd_vec3 x, double range,
                                      ethd_surface *out, size_t room) ETHD_RT;
 

@@ -1,4 +1,4 @@
-/* The numbers of a setup as rows, by which they get their defaults, are checked, and are set by name. */
+/* The numbers of a setup as rows: for defaults, checks, and setting by name. */
 #ifndef ETHD__CONTROL_SETUP_H
 #define ETHD__CONTROL_SETUP_H
 

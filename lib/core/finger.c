@@ -2,7 +2,7 @@
 
 #include "core/rows.h"
 
-/* s in which tracking fades out or in, as long as a swap takes by default (transition.swap_time). */
+/* s: fade of tracking, as long as a swap's by default (transition.swap_time). */
 #define FADE 0.020
 
 /* Implausible readings in a row that stop the device: as many as make the filter start anew (ETHD_FILTER_GATED_MAX).

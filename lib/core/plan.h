@@ -15,7 +15,7 @@ typedef struct ethd__core_plan {
   double swap_time;     /* s */
   double energy;        /* J that a contact may give away */
   double damping_max;   /* Ns/m that the passivity controller may add */
-  double brake;         /* Ns/m by which a force holds a ruling's speed; 0: the front holds it by its speed */
+  double brake;         /* Ns/m: damping of a force that holds a ruling's speed; 0: the front bounds the speed itself */
   bool watches_energy;  /* `energy` is a limit */
   bool latches;         /* limits.latch */
   bool by_velocity;     /* `follow` is the law's velocity, not its force */

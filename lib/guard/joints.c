@@ -8,7 +8,7 @@
 
 #define INF ((double)INFINITY)
 #define SLOWEST 1e-6 /* rad/s^2 */
-#define ALONE 1e-6   /* share of the largest number asked for, by which a joint may be too much without scaling all */
+#define ALONE 1e-6   /* a joint's excess below this share of the largest request scales nothing */
 
 typedef struct window {
   double lo, hi;

@@ -2,7 +2,7 @@
 
    Fading-memory polynomial filter of the second degree (Morrison 1969, Introduction to Sequential Smoothing and
    Prediction, chapter 13). To what the model's acceleration leaves of the past distances it fits the parabola of least
-   squares, in which a sample of j ticks ago has the weight b^j. It predicts, and corrects by the residual e of the
+   squares; a sample of j ticks ago has the weight b^j. It predicts, and corrects by the residual e of the
    measured distance:
 
      d -= v T + (model + w) T^2/2     v += (model + w) T       d < 0: behind the surface, v > 0: towards it

@@ -28,7 +28,7 @@ static const ethd_param params[COUNT] = {
     {"effort", "1", 0.1, 1, 0.8, "share of the device's acceleration that the approach uses"},
     {"acceleration", "m/s2", 0.01, 1e4, 5, "of a device that doesn't say what it can do"},
     {"reach", "m", 1e-6, 0.01, 0.001, "distance from the wall within which the effector is held"},
-    {"release", "1", -1, 1, 0.5, "share of the gap by which the finger comes back until the effector is released"},
+    {"release", "1", -1, 1, 0.5, "share of the gap that the finger comes back before the effector is released"},
     {"range", "m", 0, 10, 0.4, "distance before the wall at which the approach begins"},
 };
 

@@ -3,7 +3,7 @@
 #include "scene/build.h"
 
 #define DIRECTIONS 8 /* how many are tried over a quarter turn, after which a box looks the same */
-#define SAMPLES 32   /* discs by which a direction is judged */
+#define SAMPLES 32   /* discs that judge a direction */
 
 static const float directions[DIRECTIONS][2] = {
     {1, 0},

@@ -102,7 +102,7 @@ static void frame(ethd_scene *s, bounds b) {
   s->scale = ldexp(1, exponent < -400 ? 400 : -exponent); /* its square is finite */
 }
 
-/* Returns the largest of an object's coordinates and lengths, by which rounding is judged. */
+/* Returns the largest of an object's coordinates and lengths: the scale of its rounding errors. */
 static double largest(const ethd_object_def *def) {
   const ethd__shape *s = &ethd__shapes[def->shape];
   double most = 0;

@@ -5,7 +5,7 @@
 
 #define SMALL 12 /* items that are sorted by insertion */
 
-/* Returns the rank by which items are ordered along one axis; the id makes all ranks different. */
+/* Returns an item's rank along one axis; the id makes all ranks different. */
 static uint64_t rank(const ethd__item *i, int side) { return (uint64_t)i->at[side] << 32 | i->id; }
 
 static void swap(ethd__item *a, ethd__item *b) {

@@ -85,7 +85,7 @@ void ethd__chain_nearest(const ethd__chain *chain, ethd_vec x, ethd_touch *out) 
 void ethd__chain_touch(const ethd__chain *chain, size_t k, ethd_vec x, bool inside, ethd_touch *out) ETHD_RT;
 
 /* Finds the first local minimum of the distance at edge `from` or later; vertex k comes before edge k. Returns the edge
-   to go on from, 0 when there is no minimum. x is outside of a polygon, of which only surfaces that face x count. */
+   to go on from, 0 when there is no minimum. x is outside of a polygon; only its surfaces that face x count. */
 size_t ethd__chain_minimum(const ethd__chain *chain, ethd_vec x, size_t from, ethd_touch *out) ETHD_RT;
 
 /* Returns true if edge k, or vertex k before it, has a local minimum; k = edges is the chain's end. x is passed by its

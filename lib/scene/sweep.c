@@ -128,7 +128,7 @@ static uint32_t scrambled(uint32_t k) {
   return k ^ (k >> 16);
 }
 
-/* Inserts e between two neighbours, one of which has no child on the side of the other: e goes there. */
+/* Inserts e between two neighbours: one has no child on the other's side, and e goes there. */
 static void insert(sweep *s, uint32_t e, uint32_t below, uint32_t above) {
   node *t = s->nodes;
   t[e] = (node){NONE, {NONE, NONE}, {NONE, NONE}, scrambled(e)};

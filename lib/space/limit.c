@@ -80,7 +80,7 @@ static int32_t breach(const ethd__space_tick *t, const double *d, int count) {
 
 /* ---- velocity ---- */
 
-/* Cuts u to a length by its part across the first `count` of these directions, which are perpendicular: the change along
+/* Cuts u to a length by its part across the first `count` directions of `own`, which are perpendicular: the change along
    them was needed. That part was within the length before and is only cut back to it, so u changes no more than before. */
 static ethd_vec3 cut_across(ethd_vec3 u, double most, const ethd_vec3 *own, int count) {
   ethd_vec3 along = {0, 0, 0};

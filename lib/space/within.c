@@ -1,5 +1,5 @@
 /* The velocity nearest to one that is asked for, under bounds along normals: the projection onto the set
-   {u: n_i.u <= s_i}, in which held bounds are equations. In three dimensions at most three bounds act at once, so all
+   {u: n_i.u <= s_i}; held bounds are equations. In three dimensions at most three bounds act at once, so all
    choices of up to three are tried, fewer first; the first that satisfies the others and pushes along none of its own
    is the solution (Karush-Kuhn-Tucker; the projection onto a convex set is unique). Of n bounds there are at most
    n + n (n - 1) / 2 + n (n - 1) (n - 2) / 6 choices, 575 of 15. */

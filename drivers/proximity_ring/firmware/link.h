@@ -10,7 +10,7 @@
 
 #define LINK_SIZE 10
 
-/* status: a count of readings modulo 8, by which a block that was fetched before is known, and: */
+/* status: a count of readings modulo 8, which tells a new block from an old one, and: */
 #define LINK_COUNT 0x07u
 #define LINK_FIRST 0x08u     /* the first since the board's reset */
 #define LINK_RECOVERED 0x10u /* a sensor's bus was clocked free */

@@ -81,8 +81,8 @@ int ethd__bounds_rows(const ethd__sampled_loop *loop, ethd__bounds_row out[ETHD_
 
 /* The margin that every loop must have. */
 typedef struct ethd__bounds_margin {
-  double gain;  /* the factor by which its stiffness, its damping and both at once may grow */
-  double delay; /* s by which a torque may be later */
+  double gain;  /* largest factor on its stiffness, on its damping, and on both at once */
+  double delay; /* s: largest additional delay of a torque */
 } ethd__bounds_margin;
 
 /* Returns whether the loop has the margin. A loop without gains does. */

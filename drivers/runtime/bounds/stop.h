@@ -13,7 +13,7 @@ typedef struct ethd__bounds_stop {
   double force;             /* F_sat, N: the torque limit / L */
   double friction, viscous; /* f_c N, b_v Ns/m */
   double stiffness;         /* K_x of tracking along the motion, N/m at the ring */
-  double behind;            /* s by which the finger's estimate is behind the finger */
+  double behind;            /* s: delay of the finger's estimate */
   double gap;               /* m */
 } ethd__bounds_stop;
 

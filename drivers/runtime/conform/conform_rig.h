@@ -21,7 +21,7 @@ struct ethd__conform_rig {
   const ethd_conform_def *def;
   ethd_device *device;
   int64_t now, period; /* ns */
-  atomic_int stop;     /* the I/O threads, of which there are `units` */
+  atomic_int stop;     /* the `units` I/O threads */
   uint32_t units;
   ethd__conform_rig_unit unit[ETHD_UNITS_MAX];
   ethd_sense sense;
@@ -29,7 +29,7 @@ struct ethd__conform_rig {
   /* over all ticks since the device was opened */
   double resolution, speed, age; /* smallest step, rad; fastest, rad/s; oldest, s */
   double late;                   /* s: the latest that a tick came, through no fault of the device */
-  double span;                   /* s: sum of the times between neighbouring samples, of which there are `spans` */
+  double span;                   /* s: sum of the `spans` times between neighbouring samples */
   int64_t faults, grave, reading_ns;
   int backwards, ahead, failed, finite, samples, spans, readings;
 };

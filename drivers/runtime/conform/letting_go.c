@@ -9,7 +9,7 @@
 #define LEFT 0.25   /* share of an acceleration that friction or a slope may leave */
 #define SILENCE 1.0 /* s without any message */
 
-/* Returns the length of a window, s, of which two show an acceleration. */
+/* Returns the length of a window, s; two windows show an acceleration. */
 static double window(const ethd__conform_rig *r) { return fmax(LAPSE / 2, SPACINGS * ethd__conform_rig_spacing(r)); }
 
 /* Returns false when such a push would be lost in the steps of the angle, so that its result would answer nothing. */

@@ -64,7 +64,7 @@ struct ethd_loop {
   int32_t marks;
   bool was_armed;
   int64_t late;    /* ns: the longest overrun since the last step */
-  int64_t ahead;   /* ns by which CLOCK_BOOTTIME is ahead of the loop's clock at most */
+  int64_t ahead;   /* ns: upper bound of CLOCK_BOOTTIME minus the loop's clock */
   int64_t slept;   /* ns for which the machine was suspended since the last step */
   int64_t bucket;  /* the leaky bucket of overruns */
   int64_t beat_at; /* ns: the tick that saw the application's last beat; 0: none has */
@@ -85,7 +85,7 @@ struct ethd_loop {
   ethd__loop_ring rows;
 
   /* [main] */
-  pid_t process; /* in which the threads are; 0: there are none */
+  pid_t process; /* of the threads; 0: there are none */
   int32_t shortfalls;
   bool started, locked, has_control, has_watch;
   uint64_t faults[ETHD_FAULT_COUNT]; /* of controllers that were reset */

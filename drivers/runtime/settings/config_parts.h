@@ -93,7 +93,7 @@ extern void (*ethd__foreign_code)(const char *what, unsigned patience);
    plugins. */
 void ethd__config_foreign(const ethd_config *config, const char *what);
 
-/* Calls the front's check, in which laws of the configuration's plugins may run. */
+/* Calls the front's check, which may run the plugins' laws. */
 ethd_status ethd__config_check(const ethd_config *config, const ethd__config_front *front, void *setup,
                                ethd_error *error);
 

@@ -29,7 +29,7 @@ typedef struct replay {
   ethd__tape tape;
   size_t next;     /* the row that read gives next */
   size_t answered; /* rows whose command has come; the safe command at the end isn't one of them */
-  int64_t waits;   /* periods in which there was no sample */
+  int64_t waits;   /* periods without a sample */
   double share;    /* of the recorded torque that the last command let through */
   uint64_t compared, different;
   double first; /* the first row that differs, -1: none */

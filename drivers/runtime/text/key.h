@@ -38,7 +38,7 @@ ETHD_MUST_CHECK ethd_status ethd__key_value(const ethd__key *key, const ethd_par
 typedef struct ethd__key_row {
   ethd_param param;    /* its default is NaN if the key must be given */
   size_t offset;       /* of an int32_t for words, of a uint32_t for a whole number, else of a double */
-  const char *section; /* NULL: the section in which the table is read */
+  const char *section; /* NULL: the table's section */
 } ethd__key_row;
 
 typedef struct ethd__key_file {
