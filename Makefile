@@ -162,7 +162,7 @@ SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -ty
 ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a $(B)/libethd.a
 LIBRARIES := $(foreach l,ethd ethd-drivers,$(B)/lib$(l).a $(B)/lib$(l).so.0 $(B)/lib$(l).so)
 # What the drivers' library needs of others.
-DRIVERS_LIBS := -linih -lmodbus
+DRIVERS_LIBS := -linih -ljansson -lmodbus
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
 # A script may run any program, and locale.sh runs unit tests.
@@ -237,7 +237,7 @@ $(B)/tests/$(notdir $(1:.c=)): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIV
 	$$(call say,LINK,$$@)
 	@mkdir -p $$(@D)
 	$$(Q)$$(LINK) -o $$@ $$< $(B)/libethd-tests.a $(B)/libethd-apps.a $$(WHOLE) \
-	  $$(shell $$(PKG_CONFIG) --libs check) -linih -lmodbus $$(LIBS)
+	  $$(shell $$(PKG_CONFIG) --libs check) $$(DRIVERS_LIBS) $$(LIBS)
 endef
 $(foreach t,$(TESTS_C),$(eval $(call test_program,$(t))))
 

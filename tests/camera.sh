@@ -9,7 +9,7 @@ bin=$BUILD/bin
 python=${PYTHON:-python3}
 port=$((20000 + $$ % 20000))
 printf '[device]\ndriver = hello, camera\ncamera.listen = 127.0.0.1:%s\ncamera.patience = 20\ncamera.delay = 0\n' $port >"$folder/c.ini"
-"$python" tests/camera_bridge.py $port 12 &
+"$python" apps/examples/tracker.py $port 12 &
 bridge=$!
 "$bin/ethd-run" --config "$folder/c.ini" --duration 2 --record "$folder/rec" >"$folder/out" 2>"$folder/err" </dev/null ||
   fail "exit $?: $(cat "$folder/out" "$folder/err")"

@@ -87,11 +87,11 @@ for object in $LOOP_OBJECTS; do
     fail "$object, of the loop's thread, needs what it may not:" && cat "$folder/object"
 done
 # The C library's text depends on the process's locale: drivers/runtime/text/locale.c alone asks for it. lib's parser gives strtod digits
-# without a point; ini.c sets a locale while inih reads.
+# without a point; ini.c and camera.c set a locale while inih and jansson read.
 local='(__)?(isoc[0-9]+_)?v?([fd]|sn?|as)?w?(printf|scanf)(_chk)?|(__isoc[0-9]+_)?(strto(d|f|ld)|wcsto[a-z]+)|atof|strf(rom.*|mon|ptime)|__ctype_.*|is(alnum|alpha|blank|cntrl|digit|graph|lower|print|punct|space|upper|xdigit)|to(upper|lower)|strn?casecmp|strcasestr|(str|wcs)(coll|xfrm)|alphasort|glob|fnmatch|regcomp|x?p?str?error(_r)?|perror|mb[a-z]+|wc[a-z]+|isw[a-z]+|(set|use|new|dup)locale|localeconv|nl_langinfo'
 nm -A -u "$BUILD/libethd.a" "$BUILD/libethd-drivers.a" "$BUILD/libethd-apps.a" "$BUILD"/obj/apps/ethd-*.o |
   awk '{ sub(/@.*/, "", $NF); sub(/:[^:]*$/, "", $1); print $1, $NF }' | grep -E " ($local)\$" |
-  grep -vE ':locale.o |libethd.a:text.o strtod$|:ini.o uselocale$' >"$folder/local" &&
+  grep -vE ':locale.o |libethd.a:text.o strtod$|:(ini|camera).o uselocale$' >"$folder/local" &&
   fail "text that depends on the process's locale (see drivers/runtime/text/locale.h):" && cat "$folder/local"
 echo "$(wc -l <"$folder/exported") exported, $(echo $RT_OBJECTS $LOOP_OBJECTS | wc -w) objects of the control side"
 exit $failed

@@ -1,71 +1,71 @@
 #include "finger/camera.h"
 
-#include <string.h>
+#include <jansson.h>
+#include <math.h>
 
 #include "ethd/sense.h"
-#include "proximity_ring/decoder.h"
+#include "text/error_text.h"
 
-#define MAGIC "EFC1"
-#define NOISE_MAX 1.0      /* m */
+#define SECONDS_MAX 9e9    /* s: 285 years, what 64 bits of ns hold */
+#define NOISE_MAX 1.0      /* m, m/s */
 #define BACK_NS 1000000000 /* no network holds a datagram back for so long: the sender's clock jumped back */
 #define AHEAD_NS 50000000  /* nor is one so much quicker than all before: it jumped ahead */
 #define ORDER_MAX 1000     /* exposures that may overtake a datagram; if more do, the sender has restarted */
 
-enum { AT_SEQ = 4, AT_TIME = 8, AT_X = 16, AT_Y = 24, AT_NOISE = 32, AT_FLAGS = 40, AT_CRC = 42 };
+/* ---- the datagram ---- */
 
-/* ---- bytes ---- */
-
-static uint64_t get(const uint8_t *at, int bytes) {
-  uint64_t word = 0;
-  for (int i = bytes; i--;) word = word << 8 | at[i];
-  return word;
+static bool refuse(char *why, const char *what) {
+  (void)ethd__say(why, ETHD_E_SYNTAX, "%s", what);
+  return false;
 }
 
-static double get_number(const uint8_t *at) {
-  uint64_t word = get(at, 8);
-  double number;
-  memcpy(&number, &word, sizeof number);
-  return number;
+/* Reads a list of two or three numbers and returns how many; 0: it isn't one. The third is 0 where there are two. */
+static uint32_t read_list(const json_t *list, double most, ethd_vec3 *out) {
+  double x[3] = {0, 0, 0};
+  const size_t n = json_array_size(list);
+  if (n != 2 && n != 3) return 0;
+  for (size_t i = 0; i < n; i++) {
+    x[i] = json_number_value(json_array_get(list, i));
+    if (!json_is_number(json_array_get(list, i)) || !(fabs(x[i]) <= most)) return 0;
+  }
+  *out = ethd_vec3_of(x);
+  return (uint32_t)n;
 }
 
-static void put(uint8_t *at, uint64_t word, int bytes) {
-  for (int i = 0; i < bytes; i++, word >>= 8) at[i] = (uint8_t)word;
+static bool is_between(double x, double least, double most) { return x >= least && x <= most; }
+
+static bool check(json_int_t seq, double t, const json_t *p, const json_t *v, ethd__exposure *e, char *why) {
+  if (seq < 0 || seq > UINT32_MAX) return refuse(why, "seq: 0 to 4294967295 is allowed");
+  if (!is_between(t, -SECONDS_MAX, SECONDS_MAX)) return refuse(why, "t: seconds up to 9e9 are allowed");
+  if (!is_between(e->noise, 0, NOISE_MAX)) return refuse(why, "noise: 0 to 1 m is allowed");
+  if (!is_between(e->v_noise, 0, NOISE_MAX)) return refuse(why, "v_noise: 0 to 1 m/s is allowed");
+  if (!is_between(e->confidence, 0, 1)) return refuse(why, "confidence: 0 to 1 is allowed");
+  if (!v != !(e->v_noise > 0)) return refuse(why, "v and a v_noise over 0 belong together");
+  if (p && !(e->axes = read_list(p, ETHD_SENSE_LENGTH_MAX, &e->finger)))
+    return refuse(why, "p: two or three numbers within 1e6 m are allowed");
+  if (v && read_list(v, ETHD_SENSE_SPEED_MAX, &e->v) != e->axes)
+    return refuse(why, "v: as many numbers as in p, within 1e6 m/s, are allowed");
+  e->seq = (uint32_t)seq;
+  e->t_ns = llround(1e9 * t);
+  return true;
 }
 
-static void put_number(uint8_t *at, double number) {
-  uint64_t word;
-  memcpy(&word, &number, sizeof word);
-  put(at, word, 8);
-}
-
-/* Returns whether the numbers can be an exposure's; NaN can't. */
-static bool is_possible(const ethd__exposure *e) {
-  return e->finger.x >= -ETHD_SENSE_LENGTH_MAX && e->finger.x <= ETHD_SENSE_LENGTH_MAX &&
-         e->finger.y >= -ETHD_SENSE_LENGTH_MAX && e->finger.y <= ETHD_SENSE_LENGTH_MAX && e->noise >= 0 &&
-         e->noise <= NOISE_MAX;
-}
-
-bool ethd__exposure_decode(const uint8_t *bytes, size_t count, ethd__exposure *out) {
-  if (count != ETHD__EXPOSURE_SIZE || memcmp(bytes, MAGIC, 4) != 0) return false;
-  if (ethd__frame_crc(bytes, ETHD__EXPOSURE_SIZE) != 0) return false;
-  *out = (ethd__exposure){.seq = (uint32_t)get(bytes + AT_SEQ, 4),
-                          .t_ns = (int64_t)get(bytes + AT_TIME, 8),
-                          .finger = {get_number(bytes + AT_X), get_number(bytes + AT_Y)},
-                          .noise = get_number(bytes + AT_NOISE),
-                          .flags = (uint16_t)get(bytes + AT_FLAGS, 2)};
-  if (out->flags & ~ETHD__EXPOSURE_SEEN) return false;
-  return !(out->flags & ETHD__EXPOSURE_SEEN) || is_possible(out);
-}
-
-void ethd__exposure_encode(const ethd__exposure *e, uint8_t out[ETHD__EXPOSURE_SIZE]) {
-  memcpy(out, MAGIC, 4);
-  put(out + AT_SEQ, e->seq, 4);
-  put(out + AT_TIME, (uint64_t)e->t_ns, 8);
-  put_number(out + AT_X, e->finger.x);
-  put_number(out + AT_Y, e->finger.y);
-  put_number(out + AT_NOISE, e->noise);
-  put(out + AT_FLAGS, e->flags, 2);
-  put(out + AT_CRC, ethd__frame_crc(out, AT_CRC), 2);
+bool ethd__exposure_decode(const char *bytes, size_t count, ethd__exposure *out, char why[ETHD_MESSAGE_MAX]) {
+  json_error_t error = {.text = ""};
+  json_int_t seq = 0;
+  double t = 0;
+  json_t *p = NULL, *v = NULL;
+  *out = (ethd__exposure){.confidence = 1};
+  if (count > ETHD__EXPOSURE_SIZE) return refuse(why, "a datagram of at most 1024 bytes is allowed");
+  const locale_t own = uselocale(ethd__c_locale); /* by which jansson knows the decimal point */
+  json_t *root = json_loadb(bytes, count, JSON_REJECT_DUPLICATES, &error);
+  const bool is_read = root && !json_unpack_ex(root, &error, JSON_STRICT, "{s:I, s:F, s?o, s?F, s?o, s?F, s?F}", "seq",
+                                               &seq, "t", &t, "p", &p, "noise", &out->noise, "v", &v, "v_noise",
+                                               &out->v_noise, "confidence", &out->confidence);
+  uselocale(own);
+  const bool is_good = is_read ? check(seq, t, p, v, out, why) : refuse(why, error.text);
+  json_decref(root);
+  return is_good;
 }
 
 /* ---- clock ---- */

@@ -1,14 +1,17 @@
-/* The datagram that a motion capture's bridge sends for each exposure: 44 bytes, little endian. It is no maker's
-   protocol; a bridge of some ten lines, linked with the maker's SDK, fills it.
+/* The datagram that a tracker's bridge sends for each position of the finger: a motion capture's or a headset's program,
+   linked with its maker's SDK. It is JSON (RFC 8259), at most ETHD__EXPOSURE_SIZE bytes, decoded by jansson:
 
-     offset  0      4     8              16     24     32      40      42
-             | EFC1 | seq | t_ns         | x    | y    | noise | flags | crc |
-               4     u32   i64            f64    f64    f64     u16     u16
+     {"seq": 258, "t": 12.5, "p": [0.25, -0.1, 0.3], "noise": 0.013, "v": [0, 0, 0.4], "v_noise": 0.05, "confidence": 1}
 
-   seq counts exposures, modulo 2^32. t_ns is the middle of the exposure in the sender's own monotonic clock (NatNet:
-   CameraMidExposureTimestamp). x and y, m, are the finger's centre in R_0; noise, m, is its standard deviation in each
-   axis, 0 if it isn't known. Bit 0 of flags says that the finger was seen; without it x, y and noise are ignored. The
-   other bits are 0. crc is CRC-16/MCRF4XX of the 42 bytes before it.
+     seq         counts the datagrams, modulo 2^32
+     t           s: the instant that the position is for, in the sender's own monotonic clock: the middle of the exposure
+                 (NatNet: CameraMidExposureTimestamp), or the time at which a headset's runtime located the joint
+     p           m: the finger's centre in R_0, [x, y] or [x, y, z]; without it the finger wasn't seen
+     noise       m: standard deviation of each axis; without it, or 0: not known
+     v, v_noise  m/s: the finger's velocity and the standard deviation of each axis; both or neither
+     confidence  0 to 1, 1 without it
+
+   seq and t are needed. Another key, another type and a number out of range refuse the datagram.
 
    The arrival of datagrams gives the sender's clock in host time: each is late by at least `delay`, so the offset is
    the smallest difference among the last ones, minus `delay`. A datagram that the network held back doesn't change it.
@@ -30,19 +33,19 @@
 
 #include "ethd/maths.h"
 
-enum { ETHD__EXPOSURE_SIZE = 44, ETHD__EXPOSURE_SEEN = 1 };
+enum { ETHD__EXPOSURE_SIZE = 1024 };
 
 typedef struct ethd__exposure {
   uint32_t seq;
   int64_t t_ns;
-  ethd_vec finger; /* m, in R_0 */
-  double noise;    /* m */
-  uint16_t flags;
+  uint32_t axes;         /* of finger and v: 2 or 3; 0: the finger wasn't seen */
+  ethd_vec3 finger, v;   /* m, m/s, in R_0 */
+  double noise, v_noise; /* m, m/s; 0: not known */
+  double confidence;     /* 0 to 1 */
 } ethd__exposure;
 
-/* Decodes a datagram. False: it isn't an exposure, or its numbers are impossible. [any, rt-safe] */
-bool ethd__exposure_decode(const uint8_t *bytes, size_t count, ethd__exposure *out) ETHD_RT;
-void ethd__exposure_encode(const ethd__exposure *exposure, uint8_t out[ETHD__EXPOSURE_SIZE]) ETHD_RT;
+/* Decodes a datagram. False: it is refused, and `why` says why. Allocates memory. [any] */
+bool ethd__exposure_decode(const char *bytes, size_t count, ethd__exposure *out, char why[ETHD_MESSAGE_MAX]);
 
 enum {
   ETHD__CAMERA_BLOCK = 128,

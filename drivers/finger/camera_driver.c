@@ -1,5 +1,5 @@
-/* The driver of a motion capture, which stands beside a driver that moves: the finger's centre in R_0 comes as
-   datagrams of a bridge (camera.h).
+/* The driver of a motion capture or a headset, which stands beside a driver that moves, in the plane or in space: the
+   finger's centre in R_0 comes as datagrams of a bridge (camera.h).
 
    It listens where `listen` says and nowhere else. That is this machine alone (127.0.0.1, ::1) unless `from` names the
    one address whose datagrams count, because any sender of such datagrams moves the ring. */
@@ -25,13 +25,14 @@
 #define AT_ONCE 64    /* datagrams that one call of service takes at most */
 #define WAITING 65536 /* datagrams that a socket holds at most */
 
-enum { RATE, DELAY, PATIENCE, PARAMS };
+enum { RATE, DELAY, PATIENCE, CONFIDENCE, PARAMS };
 enum { LISTEN, FROM, KEYS };
 
 static const ethd_param params[PARAMS] = {
     [RATE] = {"rate", "Hz", 1, 10000, 90, "rate of the exposures"},
     [DELAY] = {"delay", "s", 0, 0.5, 0.0111, "time from an exposure to the earliest arrival of its datagram"},
     [PATIENCE] = {"patience", "s", 0.05, 60, 2, "longest wait for the first datagram"},
+    [CONFIDENCE] = {"confidence", "1", 0, 1, 0.5, "a datagram with less says nothing about the finger"},
 };
 
 static const char *const keys[] = {[LISTEN] = "listen", [FROM] = "from", [KEYS] = NULL};
@@ -42,11 +43,13 @@ typedef struct camera {
   socklen_t own_length;
   const char *where; /* the text of `own`, valid while the driver is being opened */
   double patience;   /* s to wait for the first datagram */
-  double rate;
+  double rate, confidence;
+  uint32_t axes;    /* that a position needs: 2 in the plane, 3 in space */
   bool is_virtual;  /* whether the clock is virtual */
   int64_t heard_ns; /* when it was last listened to */
   ethd__camera_clock clock;
   ethd__inbox inbox;
+  char why[ETHD_MESSAGE_MAX]; /* the last datagram was refused; "": none was */
 } camera;
 
 /* ---- addresses ---- */
@@ -91,11 +94,11 @@ static bool is_host(const struct sockaddr_storage *a, const struct sockaddr_stor
 
 /* ---- I/O ---- */
 
-static void take(camera *c, const uint8_t *bytes, size_t count, int64_t arrival_ns) {
+static void take(camera *c, const char *bytes, size_t count, int64_t arrival_ns) {
   ethd__sighting *s = &c->inbox.newest;
   ethd__exposure e;
   int64_t sample_ns;
-  if (!ethd__exposure_decode(bytes, count, &e)) {
+  if (!ethd__exposure_decode(bytes, count, &e, c->why)) {
     s->lost++;
     return;
   }
@@ -103,17 +106,24 @@ static void take(camera *c, const uint8_t *bytes, size_t count, int64_t arrival_
   bool newer = ethd__camera_clock_step(&c->clock, &e, arrival_ns, &sample_ns);
   s->lost += c->clock.lost - lost;
   s->jumps = c->clock.jumps;
-  if (!newer || !(e.flags & ETHD__EXPOSURE_SEEN)) return;
-  s->have = ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD;
-  ethd__inbox_stamp(&c->inbox, sample_ns, arrival_ns);
-  s->centre = e.finger;
-  s->noise = e.noise;
-  ethd__inbox_judge(&c->inbox, true);
+  if (!newer || !e.axes || e.confidence < c->confidence) return;
+  const bool is_good = e.axes >= c->axes;
+  if (is_good) {
+    s->have = ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD;
+    ethd__inbox_stamp(&c->inbox, sample_ns, arrival_ns);
+    s->centre = e.finger;
+    s->noise = e.noise;
+    s->v = e.v;
+    s->v_noise = e.v_noise;
+  } else {
+    snprintf(c->why, sizeof c->why, "p: three numbers are needed in space");
+  }
+  ethd__inbox_judge(&c->inbox, is_good);
 }
 
 /* Takes one datagram; false: there is none. One that is longer than any exposure is cut and then refused. */
 static bool receive(camera *c, int64_t arrival_ns) {
-  uint8_t bytes[ETHD__EXPOSURE_SIZE + 1];
+  char bytes[ETHD__EXPOSURE_SIZE + 1];
   struct sockaddr_storage from = {.ss_family = 0};
   socklen_t length = sizeof from;
   ssize_t got = recvfrom(c->fd, bytes, sizeof bytes, MSG_DONTWAIT, (struct sockaddr *)&from, &length);
@@ -180,8 +190,11 @@ static ethd_status wait_first(camera *c, char *message) {
   while (c->inbox.newest.readings == 0 && c->clock.started == false && ethd__clock_now() < end)
     if (poll(&wait, 1, WAIT_MS) > 0) (void)receive(c, ethd__clock_now());
   if (c->clock.started) return ETHD_OK;
-  return ethd__say(message, ETHD_E_DEVICE, "%s: no exposure came in %g s, %llu other datagrams: does the bridge run?",
-                   c->where, c->patience, (unsigned long long)c->inbox.newest.lost);
+  if (!*c->why)
+    return ethd__say(message, ETHD_E_DEVICE, "%s: no datagram came in %g s: does the bridge run?", c->where,
+                     c->patience);
+  return ethd__say(message, ETHD_E_DEVICE, "%s: %llu datagrams were refused: %s", c->where,
+                   (unsigned long long)c->inbox.newest.lost, c->why);
 }
 
 static ethd_status camera_prepare(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
@@ -195,6 +208,8 @@ static ethd_status camera_prepare(const ethd_device_def *def, void **device, cha
   if (!c) return ETHD_E_MEMORY;
   c->fd = -1;
   c->rate = p[RATE];
+  c->confidence = p[CONFIDENCE];
+  c->axes = 2;
   c->is_virtual = def->is_virtual;
   c->clock.delay = (int64_t)(1e9 * p[DELAY]);
   if (ethd__inbox_open(&c->inbox, p[RATE])) return ethd__no_memory(message, NULL);
@@ -242,7 +257,7 @@ const ethd_driver ethd_driver_camera = {
     .size = sizeof(ethd_driver),
     .abi = ETHD_DRIVER_ABI,
     .id = "camera",
-    .brief = "a motion capture's positions in R_0, by UDP from a bridge, beside a driver that moves",
+    .brief = "a motion capture's or headset's positions in R_0, by UDP from a bridge, beside a driver that moves",
     .params = params,
     .param_count = PARAMS,
     .keys = keys,

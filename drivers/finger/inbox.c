@@ -47,7 +47,7 @@ void ethd__inbox_read(ethd__inbox *in, int64_t now_ns, ethd_sense *out) {
   if (s->readings != in->read && s->sample_ns <= now_ns) {
     out->have |= s->have;
     out->sample_ns = s->sample_ns;
-    ethd_vec_put(s->centre, out->centre);
+    ethd_vec_put((ethd_vec){s->centre.x, s->centre.y}, out->centre);
     out->finger_noise = s->noise;
     in->read = s->readings;
   }

@@ -14,8 +14,8 @@
 typedef struct ethd__sighting {
   int64_t sample_ns, arrival_ns; /* CLOCK_MONOTONIC, or the virtual clock's */
   int64_t have;                  /* ETHD_HAVE_* */
-  ethd_vec centre;               /* m */
-  double noise;                  /* m, sd of each axis */
+  ethd_vec3 centre, v;           /* m, m/s; in the plane x and y count */
+  double noise, v_noise;         /* m, m/s: sd of each axis; v_noise 0: v isn't known */
   uint64_t readings;             /* good readings */
   uint64_t lost;                 /* readings damaged, missing in the sequence, or out of order: row 15 */
   uint64_t refused;              /* readings that arrived whole, but that no finger can give */

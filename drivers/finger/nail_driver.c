@@ -41,7 +41,10 @@ static bool means(const void *sensor, const uint16_t counts[ETHD__FRAME_SENSORS]
   double distance = ethd__sensor_distance(&n->sensor, c);
   double step = distance - ethd__sensor_distance(&n->sensor, (uint16_t)(c + 1));
   out->noise = sqrt(n->noise * n->noise + step * step / 12);
-  return ethd__nail_centre(&n->nail, distance, &out->centre);
+  ethd_vec centre;
+  if (!ethd__nail_centre(&n->nail, distance, &centre)) return false;
+  out->centre = (ethd_vec3){centre.x, centre.y, 0};
+  return true;
 }
 
 static ethd_status load(const ethd_device_def *def, const ethd_setting *file, nail_plate *n, char *message) {

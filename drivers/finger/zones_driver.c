@@ -34,7 +34,10 @@ static bool means(const void *sensor, const uint16_t counts[ETHD__FRAME_SENSORS]
     if (counts[k] == ETHD__FRAME_MISSING) return false;
     lit |= (uint32_t)(counts[k] >= r->level) << k;
   }
-  return ethd__zones_centre(&r->zones, lit, &out->centre, &out->noise);
+  ethd_vec centre;
+  if (!ethd__zones_centre(&r->zones, lit, &centre, &out->noise)) return false;
+  out->centre = (ethd_vec3){centre.x, centre.y, 0};
+  return true;
 }
 
 static ethd_status zones_prepare(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {

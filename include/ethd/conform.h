@@ -32,7 +32,7 @@ typedef struct ethd_conform_def {
   const char *ids;                /* as for ethd_device_open */
   const ethd_driver *const *from; /* as for ethd_device_open */
   const ethd_device_def *device;
-  double torque; /* Nm on each joint in turn, for the longer of 0.15 s and 24 spacings of samples;
+  double torque;            /* Nm on each joint in turn, for the longer of 0.15 s and 24 spacings of samples;
                     0, or not finite: nothing may move */
   const volatile int *stop; /* once it isn't 0, as a handler of signals makes it, the device is made safe and closed,
                                      and what is left isn't asked; NULL: all is asked */

@@ -61,7 +61,7 @@ enum {
   X(int64_t, grave, 1, "1", "bits: rows whose second reaction is due")                            \
   X(double, x, 3, "m", "the end effector: centre of ring or cap, centre of the plate's face")     \
   X(double, v, 3, "m/s", "its velocity")                                                          \
-  X(double, normal, 3, "1", "unit vector that the plate faces, away from the finger")         \
+  X(double, normal, 3, "1", "unit vector that the plate faces, away from the finger")             \
   X(double, finger, 3, "m", "finger centre")                                                      \
   X(double, finger_v, 3, "m/s", "finger velocity")                                                \
   X(int64_t, sample_ns, 1, "ns", "instant of the reading")                                        \

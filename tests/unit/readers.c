@@ -7,6 +7,7 @@
 #include "ethd/config.h"
 #include "ethd/scene.h"
 #include "ethd/solids.h"
+#include "finger/camera.h"
 #include "inject/script.h"
 #include "proximity_ring/calibration.h"
 #include "proximity_ring/decoder.h"
@@ -156,6 +157,21 @@ static void grow_script(FILE *out, int rows) {
   for (int i = 0; i < rows; i++) fprintf(out, "%d.25 q1 offset by=0.5 for=0.1 # %d\n", i, i);
 }
 
+/* A position that comes out can be; the clock's instant for it is never later than its arrival. */
+static int read_exposure(const char *text, size_t length) {
+  char why[ETHD_MESSAGE_MAX] = "", message[ETHD_MESSAGE_MAX];
+  ethd__exposure e;
+  ethd__camera_clock clock = {.delay = 11100000};
+  int64_t sample_ns = 0;
+  if (!ethd__exposure_decode(text, length, &e, why)) {
+    snprintf(message, sizeof message, "x: %.500s", why);
+    return *why ? judged(ETHD_E_SYNTAX, message) : -1;
+  }
+  const double sum = fabs(e.finger.x) + fabs(e.finger.y) + fabs(e.finger.z), v = ethd_vec3_norm(e.v);
+  if (!ethd__camera_clock_step(&clock, &e, 1000, &sample_ns) || sample_ns != 1000 - clock.delay) return -1;
+  return e.axes <= 3 && sum <= 3e6 && v <= 2e6 && e.noise >= 0 && e.v_noise >= 0 && e.confidence <= 1 ? 1 : -1;
+}
+
 /* ---- studies ---- */
 
 static int read_protocol(const char *text, size_t length) {
@@ -216,6 +232,9 @@ static const char *const calibration_words[] = {"[sensor 3]\n", "[law]\n", "poin
                                                 "nan",          "-",       "level = gain\n", NULL};
 static const char *const script_words[] = {"q1", "offset", " by=", " for=",  "inf",   "t",
                                            "-1", "nan",    "\n",   "fault9", "1e999", NULL};
+static const char *const exposure_words[] = {
+    "{",     "}",     "[",  "]",    ",",    ":",        "\"p\"",   "\"v\": [1, 2, 3]",
+    "1e999", "\"t\"", "-1", "null", "true", "\"x\": 0", "\\u0000", NULL};
 static const char *const study_words[] = {"[grid]", "[hand]\n", "taps = ", "1e999", "nan", ",",
                                           "=",      "\n",       "latin",   "-",     NULL};
 static const char *const npy_words[] = {"'descr'",    "'<f8'", "(",    ")", ", ", "99999999999999999999",
@@ -259,6 +278,10 @@ const text_reader text_readers[] = {
     {"inject",
      TEXT("0.500 q1 freeze for=0.1 # why\n612t rays nan for=inf\n0.7 reading delay by=0.02 for=0.2\n0.9 fault9 set\n"),
      script_words, read_script, grow_script, 128},
+    {"exposure",
+     TEXT("{\"seq\": 258, \"t\": 12.5, \"p\": [0.25, -0.1, 0.3], \"noise\": 0.013, \"v\": [0, 0, 0.4],\n"
+          " \"v_noise\": 0.05, \"confidence\": 1}"),
+     exposure_words, read_exposure, NULL, 0},
     {"study",
      TEXT(
          "[study]\nname = all\nseed = 18446744073709551615\nparticipants = 10\nstrategies = a, b ,c\nspeeds = low,0.3\n"

@@ -1,4 +1,4 @@
-/* The motion capture: bytes, the sender's clock, and the driver on the loopback. */
+/* The motion capture: datagrams, the sender's clock, and the driver on the loopback. */
 #include <arpa/inet.h>
 #include <inttypes.h>
 #include <math.h>
@@ -16,21 +16,59 @@
 #include "unit/draw.h"
 #include "unit/rig.h"
 
-/* As Python's struct packs them, and a CRC worked out by hand of the polynomial (tests/camera.sh sends them so,
-   too). */
-TEST(test_bytes) {
-  static const uint8_t wire[ETHD__EXPOSURE_SIZE] = {'E',  'F',  'C',  '1',  0x02, 0x01, 0x00, 0x00, 0x00, 0xca, 0x9a,
-                                                    0x3b, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
-                                                    0xd0, 0x3f, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xd0, 0xbf, 0x00,
-                                                    0x00, 0x00, 0x00, 0x00, 0x00, 0x50, 0x3f, 0x01, 0x00, 0x7e, 0x6d};
+TEST(test_datagram) {
+  static const char whole[] =
+      "{\"seq\": 258, \"t\": 12.5, \"p\": [0.25, -0.1, 0.3], \"noise\": 0.013, \"v\": [0, 1, 0.4],"
+      " \"v_noise\": 0.05, \"confidence\": 0.75}",
+                    least[] = "{\"t\":-1e-9,\"seq\":0}", plane[] = "{\"seq\": 4294967295, \"t\": 3, \"p\": [1, 2]}";
+  char why[ETHD_MESSAGE_MAX] = "";
   ethd__exposure e;
-  uint8_t again[ETHD__EXPOSURE_SIZE];
-  ck_assert(ethd__exposure_decode(wire, sizeof wire, &e));
-  ck_assert(e.seq == 258 && e.t_ns == 1000000000 && e.finger.x == 0.25 && e.finger.y == -0.25 && e.flags == 1);
-  ck_assert(e.noise == 0x1p-10);
-  ethd__exposure_encode(&e, again);
-  ck_assert_mem_eq(wire, again, sizeof wire);
-  ck_assert(!ethd__exposure_decode(wire, sizeof wire - 1, &e));
+  ck_assert_msg(ethd__exposure_decode(whole, sizeof whole - 1, &e, why), "%s", why);
+  ck_assert(e.seq == 258 && e.t_ns == INT64_C(12500000000) && e.axes == 3 && e.noise == 0.013 && e.v_noise == 0.05);
+  ck_assert(e.finger.x == 0.25 && e.finger.y == -0.1 && e.finger.z == 0.3 && e.confidence == 0.75);
+  ck_assert(e.v.x == 0 && e.v.y == 1 && e.v.z == 0.4);
+  ck_assert_msg(ethd__exposure_decode(least, sizeof least - 1, &e, why), "%s", why);
+  ck_assert(e.seq == 0 && e.t_ns == -1 && e.axes == 0 && e.noise == 0 && e.v_noise == 0 && e.confidence == 1);
+  ck_assert_msg(ethd__exposure_decode(plane, sizeof plane - 1, &e, why), "%s", why);
+  ck_assert(e.seq == UINT32_MAX && e.axes == 2 && e.finger.x == 1 && e.finger.y == 2 && e.finger.z == 0);
+}
+
+/* Each wrong datagram is refused with the name of what is wrong. */
+TEST(test_wrong_datagrams) {
+  static const char *const wrong[][2] = {
+      {"", "'[' or '{' expected"},
+      {"EFC1", "'[' or '{' expected"},
+      {"{\"seq\": 1}", "t"},
+      {"{\"t\": 1}", "seq"},
+      {"{\"seq\": 1.5, \"t\": 1}", "integer"},
+      {"{\"seq\": -1, \"t\": 1}", "seq: 0 to 4294967295 is allowed"},
+      {"{\"seq\": 4294967296, \"t\": 1}", "seq: 0 to 4294967295 is allowed"},
+      {"{\"seq\": 1, \"t\": 1e10}", "t: seconds up to 9e9 are allowed"},
+      {"{\"seq\": 1, \"t\": NaN}", "NaN"},
+      {"{\"seq\": 1, \"t\": 1, \"t\": 1}", "duplicate"},
+      {"{\"seq\": 1, \"t\": 1, \"pp\": [1, 2]}", "pp"},
+      {"{\"seq\": 1, \"t\": 1, \"p\": [1]}", "p: two or three numbers"},
+      {"{\"seq\": 1, \"t\": 1, \"p\": [1, 2, 3, 4]}", "p: two or three numbers"},
+      {"{\"seq\": 1, \"t\": 1, \"p\": [1, \"2\"]}", "p: two or three numbers"},
+      {"{\"seq\": 1, \"t\": 1, \"p\": [1, 1000001]}", "p: two or three numbers within 1e6 m"},
+      {"{\"seq\": 1, \"t\": 1, \"p\": [1, 2], \"noise\": -1}", "noise: 0 to 1 m is allowed"},
+      {"{\"seq\": 1, \"t\": 1, \"p\": [1, 2], \"v\": [1, 2]}", "v and a v_noise over 0 belong together"},
+      {"{\"seq\": 1, \"t\": 1, \"p\": [1, 2], \"v_noise\": 1}", "v and a v_noise over 0 belong together"},
+      {"{\"seq\": 1, \"t\": 1, \"p\": [1, 2], \"v\": [1, 2, 3], \"v_noise\": 1}", "v: as many numbers as in p"},
+      {"{\"seq\": 1, \"t\": 1, \"confidence\": 2}", "confidence: 0 to 1 is allowed"},
+      {"{\"seq\": 1, \"t\": 1} {", "end of file expected"},
+  };
+  ethd__exposure e;
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    char why[ETHD_MESSAGE_MAX] = "";
+    ck_assert_msg(!ethd__exposure_decode(wrong[i][0], strlen(wrong[i][0]), &e, why), "%s", wrong[i][0]);
+    ck_assert_msg(strstr(why, wrong[i][1]) != NULL, "%s: %s", wrong[i][0], why);
+  }
+  char why[ETHD_MESSAGE_MAX], long_one[ETHD__EXPOSURE_SIZE + 2];
+  memset(long_one, ' ', sizeof long_one);
+  memcpy(long_one, "{\"seq\": 1, \"t\": 1}", 18);
+  ck_assert(!ethd__exposure_decode(long_one, ETHD__EXPOSURE_SIZE + 1, &e, why));
+  ck_assert(ethd__exposure_decode(long_one, ETHD__EXPOSURE_SIZE, &e, why));
 }
 
 /* Datagrams that are late at random, now and then much; the sender's quartz is 50 ppm off: instants are right to 0.3
@@ -42,8 +80,7 @@ TEST(test_clock) {
   for (uint32_t i = 0; i < 5000; i++) {
     double t = i / 90.0, held = -0.2e-3 * log(1 - draw(i, 0, 1)) + (i % 50 == 7 ? 20e-3 : 0);
     int64_t host_ns = (int64_t)(1e9 * t), arrival = host_ns + c.delay + (int64_t)(1e9 * held), sample;
-    ethd__exposure e = {
-        .seq = i, .t_ns = (int64_t)((uint64_t)zero + (uint64_t)(host_ns + host_ns / 20000)), .flags = 1};
+    ethd__exposure e = {.seq = i, .t_ns = (int64_t)((uint64_t)zero + (uint64_t)(host_ns + host_ns / 20000))};
     ck_assert(ethd__camera_clock_step(&c, &e, arrival, &sample));
     ck_assert_int_le(sample, arrival - c.delay);
     if (i > 20) worst = fmax(worst, 1e-9 * fabs((double)(sample - host_ns)));
@@ -107,11 +144,20 @@ TEST(test_started_again) {
 
 /* ---- the driver ---- */
 
-static void send_exposure(int fd, uint32_t seq, ethd_vec finger, uint16_t flags) {
-  ethd__exposure e = {.seq = seq, .t_ns = seq * INT64_C(11000000), .finger = finger, .noise = 2e-4, .flags = flags};
-  uint8_t wire[ETHD__EXPOSURE_SIZE];
-  ethd__exposure_encode(&e, wire);
-  ck_assert_int_eq(sendto(fd, wire, sizeof wire, 0, (struct sockaddr *)&address, sizeof address), sizeof wire);
+static void send_text(int fd, const char *text) {
+  const ssize_t sent = sendto(fd, text, strlen(text), 0, (struct sockaddr *)&address, sizeof address);
+  ck_assert_int_eq(sent, strlen(text));
+}
+
+/* The bridge's datagram at seq periods of 11 ms. */
+static void send_exposure(int fd, uint32_t seq, ethd_vec finger, bool seen) {
+  char text[256];
+  const int n = snprintf(text, sizeof text, "{\"seq\": %u, \"t\": %.9f", seq, 0.011 * seq);
+  if (seen)
+    snprintf(text + n, sizeof text - (size_t)n, ", \"p\": [%.17g, %.17g], \"noise\": 2e-4}", finger.x, finger.y);
+  else
+    strcpy(text + n, "}");
+  send_text(fd, text);
 }
 
 TEST(test_driver) {
@@ -121,11 +167,11 @@ TEST(test_driver) {
   snprintf(listen, sizeof listen, "127.0.0.1:%u", ntohs(address.sin_port));
   const ethd_setting settings[] = {{"listen", listen, 2}, {"patience", "0.05", 3}, {"delay", "0.01", 4}};
   ck_assert_int_eq(open_camera(settings, 3, &device, message), ETHD_E_DEVICE);
-  ck_assert_ptr_nonnull(strstr(message, "no exposure came in 0.05 s, 0 other datagrams: does the bridge run?"));
+  ck_assert_ptr_nonnull(strstr(message, "no datagram came in 0.05 s: does the bridge run?"));
   /* a bridge that sends while it is opened: a child of this test */
   pid_t child = fork();
   if (child == 0)
-    for (uint32_t i = 0;; i++) send_exposure(fd, i, (ethd_vec){1, 1}, 1), usleep(2000);
+    for (uint32_t i = 0;; i++) send_exposure(fd, i, (ethd_vec){1, 1}, true), usleep(2000);
   const ethd_setting patient[] = {{"listen", listen, 2}, {"patience", "30", 3}, {"delay", "0.01", 4}};
   ethd_status status = open_camera(patient, 3, &device, message);
   kill(child, SIGKILL);
@@ -135,11 +181,11 @@ TEST(test_driver) {
   ck_assert_double_eq_tol(limits.finger_age, 0.01 + 3 / 90.0, 1e-12);
   /* what waits when it starts came nobody knows when: none of it is a reading */
   ethd_sense s = {0};
-  for (uint32_t i = 0; i < 100; i++) send_exposure(fd, i, (ethd_vec){1, 1}, 1);
+  for (uint32_t i = 0; i < 100; i++) send_exposure(fd, i, (ethd_vec){1, 1}, true);
   for (int i = 0; i < 1000; i++) (void)!ethd_driver_camera.service(device, 0, INT64_C(900000000));
   (void)!ethd_driver_camera.read(device, INT64_C(900000000), &s);
   ck_assert_int_eq(s.have | s.faults, 0);
-  send_exposure(fd, 0, (ethd_vec){1, 1}, 1); /* an old sender */
+  send_exposure(fd, 0, (ethd_vec){1, 1}, true); /* an old sender */
   for (int i = 0; i < 1000; i++) (void)!ethd_driver_camera.service(device, 0, INT64_C(1000000000));
   (void)!ethd_driver_camera.read(device, INT64_C(1000000000), &s);
   ck_assert_int_eq(s.have, ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD);
@@ -147,7 +193,7 @@ TEST(test_driver) {
   for (uint32_t i = 0; i < 20; i++) {
     int64_t now = INT64_C(5000000000) + i * INT64_C(11000000);
     if (i != 5) send_exposure(fd, 1000000 + i, (ethd_vec){0.25 + 1e-3 * i, 0.2}, i != 9);
-    if (i == 12) (void)!sendto(fd, "garbage", 7, 0, (struct sockaddr *)&address, sizeof address);
+    if (i == 12) send_text(fd, "garbage");
     ck_assert_int_eq(ethd_driver_camera.service(device, 0, now), ETHD_OK);
     s = (ethd_sense){0};
     ck_assert_int_eq(ethd_driver_camera.read(device, now, &s), ETHD_OK);
