@@ -1,7 +1,11 @@
-// flags: -lembree3
-// Embree 3: point queries on a tree of user geometry, one segment a primitive; bounds in float rounded outward,
+// flags: $([ -d /usr/include/embree4 ] && echo -lembree4 || echo -lembree3)
+// Embree: point queries on a tree of user geometry, one segment a primitive; bounds in float rounded outward,
 // the segment's closed form in double.
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <atomic>
 #include <cmath>
