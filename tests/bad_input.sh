@@ -105,7 +105,7 @@ scene_file 'huge scene' 'bad.huge:1: ' bad.huge
 scene_file 'binary scene' 'bad.binary:1: ' bad.binary
 scene 'cut scene' 'bad.scene:2: ' 'circle 0 0 1\nhalfplane -1 0'
 scene 'unknown shape' 'bad.scene:1: ellipse: .*; halfplane, .*circle.*, material are allowed' 'ellipse 0 0 1 2\n'
-scene 'a shape of space' 'bad.scene:1: sphere, a shape of space: .*; halfplane, .*material are allowed' 'sphere 0 0 0 1\n'
+scene 'a shape of space' 'bad.scene:2: sphere, a shape of space: .*; halfplane, .*material are allowed' 'circle 0 0 1\nsphere 0 0 0 1\n'
 scene 'a polygon that crosses itself' 'bad.scene:2: ' '# x\npolygon 0 0 1 1 1 0 0 1\n'
 scene 'an unknown material' 'bad.scene:1: material=soft: .*; a line "material soft k_e=2500" defines it' 'circle 0 0 1 material=soft\n'
 

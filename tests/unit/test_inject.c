@@ -318,7 +318,7 @@ static const struct {
     {"0 ray17 nan", "ray17"},
     {"0 ray0 nan", "ray0"},
     {"0 ray05 nan", "ray05"},
-    {"0 fault39 set", "fault39"},
+    {"0 fault40 set", "fault40"},
     {"0 fault set", "fault"},
     {"0 write1 drop", "write1"},
     {"0 q1 drop", "kinds of this channel are freeze offset reverse scale noise value nan"},
