@@ -1,5 +1,5 @@
 #!/bin/sh
-# apps/examples, compiled against the installed tree and run: a wall, an effector in space, a law in ethd-tap, a driver that ethd_conform asks, and
+# apps/examples, compiled against the installed tree and run: a wall, an effector in space, a cap on a finger, a law in ethd-tap, a driver that ethd_conform asks, and
 # teleoperation over a line that delays, loses and reorders, that carries nonsense and surfaces that jump, and that dies.
 set -u
 work=$(mktemp -d)
@@ -35,6 +35,11 @@ awk '{ gsub(/[^-+.e0-9 ]/, ""); rows++; least = $1 < least ? $1 : least; most = 
 compiled space ethd && "$work/space" >"$work/space.out" || fail "space: exit $?"
 awk '{ rows++; if ($1 == "nan") next; d = $1; v = $6; state = $9; if (d < -1e-6 || (d > 0 && v * 0.009 + v * v / 16 > d + 1e-3)) bad = 1 }
   END { exit !(rows == 50 && !bad && d < 1e-4 && v < 1e-3 && state == 2) }' "$work/space.out" || fail "space: $(tail -n 3 "$work/space.out")"
+
+# ---- cap: it stands in the wall when the finger comes to its inside, and stops when the finger leaves ----
+compiled cap ethd -lm && "$work/cap" >"$work/cap.out" || fail "cap: exit $?"
+awk '{ rows++; out = /beyond its rim/; if (out) left++; else if (left || $4 < -1e-4 || ($10 < 1e-4 && $4 > 1e-4)) bad = 1; else if ($10 < 1e-4 && /state 2/) met++ }
+  END { exit !(rows == 30 && !bad && met > 5 && left && out) }' "$work/cap.out" || fail "cap: $(cat "$work/cap.out")"
 
 # ---- law: tapped beside ours, since its configuration names it; swapped in by name, its taps differ ----
 compiled law ethd -shared -fPIC && cp "$work/law" "$work/mine.so"
