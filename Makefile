@@ -371,6 +371,11 @@ stress: all $(B)/tests/test_scene_tree \
 	@$(B)/tests/day $(B)/day 24 10 2>$(B)/day.err
 	for t in $(STRESS); do ETHD_STRESS=1 $$t || exit 1; done
 	@BUILD='$(B)' SAN='$(SAN)' sh tests/stress/frames.sh
+# The front in space is handed what others calculate.
+ifeq ($(SAN),)
+	@$(MAKE) --no-print-directory SAN=address,undefined TESTS=test_stress_space tests
+	ETHD_STRESS=1 $(BUILD)-san-address-undefined/tests/test_stress_space
+endif
 
 # What the tests reach: every branch of lib, 90 % of drivers, the conditions that decide; then how many small bugs they see.
 coverage:
