@@ -40,19 +40,19 @@ replays() { # FOLDER
   done
 }
 
-# Recordings are compared in the columns that they had before readings carried their noise and before laws learnt: where
-# neither is used, the numbers stay.
-without() { # COLUMN FILE
-  "${PYTHON:-python3}" - "$1" "$2" <<'END'
+# Recordings are compared in the columns that they had before readings carried their noise, before laws learnt, and before
+# devices said what was really commanded and when: where none of that is used, the numbers stay.
+without() { # FILE COLUMN...
+  "${PYTHON:-python3}" - "$@" <<'END'
 import ast, sys
-column, path = sys.argv[1:]
+path, *columns = sys.argv[1:]
 raw = open(path, "rb").read()
 data = 10 + int.from_bytes(raw[8:10], "little")
 header = ast.literal_eval(raw[10:data].decode())
 spans, kept, at = [], [], 0
 for field in header["descr"]:
     size = 8 * (field[2][0] if len(field) > 2 else 1)
-    if field[0] != column:
+    if field[0] not in columns:
         spans.append((at, at + size))
         kept.append(field)
     at += size
@@ -76,10 +76,9 @@ run() { # FOLDER: every plant, law and speed; the paper's laws in the columns th
     "$bin/ethd-tap" --plant $plant --taps 3 --seed 7 --transition offset,predictive --learn 2 \
       --set transition.learn=0.3 --validity finger --csv "$1/$plant-predictive.csv" \
       --record "$1/$plant-predictive" >/dev/null
-    without learnt "$1/$plant/tick.npy"
     rm "$1/$plant/config.ini" "$1/$plant-predictive/config.ini" # name this machine's folders
-    without finger_noise "$1/$plant/tick.npy"
-    without finger_noise "$1/$plant-predictive/tick.npy"
+    without "$1/$plant/tick.npy" learnt finger_noise commanded age
+    without "$1/$plant-predictive/tick.npy" finger_noise commanded age
   done
   replays "$1"
   (cd "$1" && find . -type f | LC_ALL=C sort | xargs sha256sum)

@@ -88,6 +88,7 @@ static ethd_status counter_read(void *device, int64_t now_ns, ethd_sense *out) E
   if (ethd_cell_take(c->cell, &c->taken) != ETHD_OK) return ETHD_STATUS_STALE;
   for (int j = 0; j < 2; j++) step(c, j, out);
   out->time_ns = c->taken.time_ns;
+  out->have &= ~(int64_t)ETHD_HAVE_AGE; /* of another driver's samples */
   if (c->encoder[0].has_dq && c->encoder[1].has_dq) out->have |= ETHD_HAVE_DQ;
   if (out->grave & ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP)) c->lost = 1;
   return ETHD_OK;

@@ -29,6 +29,7 @@ static inline void ethd__sense_add(const ethd_sense *from, bool has_joints, ethd
   to->grave |= from->grave;
   if (from->have & ETHD__READING) ethd__sense_put_reading(from, to);
   if (from->have & ETHD_HAVE_START) memcpy(to->finger, from->finger, sizeof to->finger);
+  if (from->have & ETHD_HAVE_COMMANDED) memcpy(to->commanded, from->commanded, sizeof to->commanded);
   to->have |= from->have;
   for (int b = 0; b < ETHD_BODIES_MAX; b++)
     if (from->have & ((int64_t)ETHD_HAVE_BODY << b))
@@ -37,6 +38,7 @@ static inline void ethd__sense_add(const ethd_sense *from, bool has_joints, ethd
   to->time_ns = from->time_ns;
   memcpy(to->q, from->q, sizeof to->q);
   if (from->have & ETHD_HAVE_DQ) memcpy(to->dq, from->dq, sizeof to->dq);
+  if (from->have & ETHD_HAVE_AGE) memcpy(to->age, from->age, sizeof to->age);
 }
 
 #endif

@@ -11,7 +11,8 @@
 #define ETHD__SERVO_REVERSE 0.15
 #define ETHD__SERVO_FOLLOW 0.020 /* s: a drive that doesn't follow its set-point for so long is a fault */
 
-enum { ETHD__SERVO_HAS_SPEED = 1, ETHD__SERVO_HAS_READING = 2 }; /* bits of `has` */
+/* Bits of `has`; CUT: the torque went out otherwise than it was asked for. */
+enum { ETHD__SERVO_HAS_SPEED = 1, ETHD__SERVO_HAS_READING = 2, ETHD__SERVO_HAS_CUT = 4 };
 
 /* What the I/O thread hands to the control thread, always whole; the control thread takes the newest. */
 typedef struct ethd__servo_sample {
@@ -20,6 +21,8 @@ typedef struct ethd__servo_sample {
   int32_t has;
   uint32_t epoch;                   /* the start that this sample belongs to */
   double q[2], dq[2];               /* axes 1 and 2 of the map: rad, rad/s */
+  int64_t later_ns[2];              /* by how much later than stamp_ns each axis was asked for */
+  double torque[2];                 /* Nm, as it went out */
   double reading[2];                /* m: finger relative to the ring */
   int64_t reading_ns;               /* when it was taken */
   uint64_t readings;                /* how many have come */

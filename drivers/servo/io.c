@@ -1,8 +1,10 @@
 /* The I/O thread's side of the servo: it makes one turn of the link for each exchange. */
+#include <math.h>
 #include <time.h>
 
 #include "clock.h"
 #include "servo/device.h"
+#include "servo/words.h"
 
 #define PHASE 0.2 /* of a period passes between a tick and the exchange, so that the tick's command is there */
 #define BEHIND 3  /* exchanges: what would be due later than this is due now */
@@ -19,16 +21,33 @@ static void command(ethd__servo_device *d, int64_t now_ns, double torque[2]) {
   d->due_ns = now_ns - behind + d->exchange_ns;
 }
 
-/* Returns when the drive was asked for the joint positions; of two requests, the earlier one. The drive samples them at
-   an unknown time after the request. The request's time is used, so that no sample seems newer than it is. */
-static int64_t asked(const ethd__servo_link *l) {
-  int64_t first = INT64_MAX;
+/* Returns when the drive was asked for the joint positions; of two requests, the earlier one, and by how much later each
+   went out. The drive samples them at an unknown time after the request. The request's time is used, so that no sample
+   seems newer than it is. */
+static int64_t asked(const ethd__servo_link *l, int64_t later_ns[2]) {
+  int64_t at[2], first = INT64_MAX;
   for (int i = 0; i < 2; i++) {
     int32_t r = l->map->roles[ETHD__SERVO_POSITION1 + i];
-    int64_t at = r < 0 ? INT64_MAX : ethd__servo_plan_asked(&l->plan, r);
-    if (at < first) first = at;
+    at[i] = r < 0 ? INT64_MAX : ethd__servo_plan_asked(&l->plan, r);
+    if (at[i] < first) first = at[i];
   }
+  for (int i = 0; i < 2; i++) later_ns[i] = at[i] < INT64_MAX ? at[i] - first : 0;
   return first;
+}
+
+/* Notes what went out if the drive isn't enabled, or the register's limits have cut it. Rounding isn't noted: a limit of
+   the torque's rate that started from a rounded torque might never leave zero. */
+static void note_torque(ethd__servo_device *d, const double asked[2]) {
+  ethd__servo_sample *s = &d->feedback.sample;
+  s->has &= ~ETHD__SERVO_HAS_CUT;
+  for (int i = 0; i < 2; i++) {
+    int32_t at = d->map.roles[ETHD__SERVO_TORQUE1 + i];
+    const ethd__servo_register *r = &d->map.registers[at < 0 ? 0 : at];
+    double went = at < 0 ? asked[i] : ethd__servo_joint(r, d->link.raw[at]);
+    bool rounded = fabs(went - asked[i]) <= 1.001 * ethd__servo_least(r) + 1e-6 * fabs(asked[i]);
+    s->torque[i] = rounded ? asked[i] : went;
+    if (!rounded) s->has |= ETHD__SERVO_HAS_CUT;
+  }
 }
 
 /* Makes one turn of the link and publishes what it shows. The caller holds the device's lock. */
@@ -42,7 +61,10 @@ ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double
   int64_t took = ethd__clock_now() - begin;
   if (!status) {
     ethd_histogram_add(&d->trip, took);
-    ethd__servo_feedback_take(&d->feedback, &d->link, d->is_virtual ? now_ns : asked(&d->link));
+    int64_t *later = d->feedback.sample.later_ns, first = asked(&d->link, later);
+    if (d->is_virtual) later[0] = later[1] = 0; /* an exchange takes no time */
+    ethd__servo_feedback_take(&d->feedback, &d->link, d->is_virtual ? now_ns : first);
+    note_torque(d, torque);
   }
   ethd__servo_feedback_judge(&d->feedback, &d->link);
   d->feedback.sample.epoch = atomic_load_explicit(&d->epoch, memory_order_relaxed);

@@ -21,9 +21,25 @@ static void add_edges(ethd__servo_device *d, ethd_sense *out) {
   memcpy(d->seen_worst, s->worst, sizeof s->worst);
 }
 
+/* Of two units, one is asked after the other: the later sample is the sense's, and the other has its age. */
+static void add_ages(const ethd__servo_device *d, ethd_sense *out) {
+  const int64_t *later = d->newest.later_ns, last = later[0] > later[1] ? later[0] : later[1];
+  out->time_ns += last;
+  if (d->joint[0] < 0 || d->joint[1] < 0 || !last) return;
+  out->have |= ETHD_HAVE_AGE;
+  for (int i = 0; i < 2; i++) out->age[d->joint[i]] = 1e-9 * (double)(last - later[i]);
+}
+
+static void add_commanded(const ethd__servo_device *d, ethd_sense *out) {
+  if (d->joint[0] < 0 || d->joint[1] < 0 || !(d->newest.has & ETHD__SERVO_HAS_CUT)) return;
+  out->have |= ETHD_HAVE_COMMANDED;
+  for (int i = 0; i < 2; i++) out->commanded[d->joint[i]] = d->newest.torque[i];
+}
+
 static void add_joints(const ethd__servo_device *d, ethd_sense *out) {
   const ethd__servo_sample *s = &d->newest;
   out->time_ns = s->stamp_ns;
+  add_ages(d, out);
   for (int i = 0; i < 2; i++) {
     int32_t joint = d->joint[i];
     if (joint < 0) continue;
@@ -71,6 +87,7 @@ ethd_status ethd__servo_read(void *device, int64_t now_ns, ethd_sense *out) {
   out->faults |= lasting;
   out->grave |= s->grave;
   add_joints(d, out);
+  if (fresh) add_commanded(d, out);
   if (fresh) add_reading(d, now_ns, out);
   return fresh ? ETHD_OK : ETHD_STATUS_STALE;
 }

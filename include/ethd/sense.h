@@ -20,6 +20,8 @@ ETHD_BEGIN_DECLS
 #define ETHD_SENSE_ANGLE_MAX 6.2831853071795865e6 /* rad: a million turns */
 #define ETHD_SENSE_SPEED_MAX 1e6                  /* rad/s, m/s */
 #define ETHD_SENSE_LENGTH_MAX 1e6                 /* m */
+#define ETHD_SENSE_FORCE_MAX 1e6                  /* Nm, N */
+#define ETHD_SENSE_AGE_MAX 1.0                    /* s */
 
 /* What the sense holds, as bits of `have`. */
 enum {
@@ -31,27 +33,31 @@ enum {
   ETHD_HAVE_RING = 32,  /* ring: where the ring stood at sample_ns, as the device knows it */
   ETHD_HAVE_BODY = 64,  /* ETHD_HAVE_BODY << i: bodies i has a new pose; else the last one holds; i < ETHD_BODIES_MAX */
   ETHD_HAVE_WORLD =
-      1024 /* centre: a position in R_0, as a camera sees it, not relative to the ring; `ring` isn't used */
+      1024, /* centre: a position in R_0, as a camera sees it, not relative to the ring; `ring` isn't used */
+  ETHD_HAVE_COMMANDED = 2048, /* commanded: it counts in the place of the torque of the last step's command */
+  ETHD_HAVE_AGE = 4096        /* age: by the joints' speeds both angles are brought to time_ns */
 };
 
 /* X(type, name, count, unit, brief); every field is 8 bytes wide. */
-#define ETHD_SENSE_FIELDS(X)                                                          \
-  X(int64_t, time_ns, 1, "ns", "instant of the joint sample")                         \
-  X(int64_t, have, 1, "1", "bits: what this sense holds")                             \
-  X(int64_t, missed, 1, "1", "whole periods missed since the last step")              \
-  X(int64_t, step_ns, 1, "ns", "duration of the last step as the caller measured it") \
-  X(int64_t, faults, 1, "1", "bits: rows of the fault table that device or loop saw") \
-  X(int64_t, grave, 1, "1", "bits: rows whose second reaction is due")                \
-  X(double, q, 2, "rad", "joint angles")                                              \
-  X(double, dq, 2, "rad/s", "joint speeds")                                           \
-  X(double, finger, 2, "m", "finger centre in R_0")                                   \
-  X(double, finger_v, 2, "m/s", "finger velocity in R_0")                             \
-  X(int64_t, sample_ns, 1, "ns", "instant of the reading")                            \
-  X(double, centre, 2, "m", "reading: finger centre relative to the ring's")          \
-  X(double, ring, 2, "m", "ring centre at the reading's instant")                     \
-  X(double, rays, 16, "m", "reading: 16 free distances, NaN missing")                 \
-  X(double, bodies, 24, "m, rad, s", "6 of each body: x, y, angle, their speeds")     \
-  X(double, finger_noise, 1, "m", "sd of the reading, each axis; 0: as [finger_filter] noise says")
+#define ETHD_SENSE_FIELDS(X)                                                                        \
+  X(int64_t, time_ns, 1, "ns", "instant of the joint sample")                                       \
+  X(int64_t, have, 1, "1", "bits: what this sense holds")                                           \
+  X(int64_t, missed, 1, "1", "whole periods missed since the last step")                            \
+  X(int64_t, step_ns, 1, "ns", "duration of the last step as the caller measured it")               \
+  X(int64_t, faults, 1, "1", "bits: rows of the fault table that device or loop saw")               \
+  X(int64_t, grave, 1, "1", "bits: rows whose second reaction is due")                              \
+  X(double, q, 2, "rad", "joint angles")                                                            \
+  X(double, dq, 2, "rad/s", "joint speeds")                                                         \
+  X(double, finger, 2, "m", "finger centre in R_0")                                                 \
+  X(double, finger_v, 2, "m/s", "finger velocity in R_0")                                           \
+  X(int64_t, sample_ns, 1, "ns", "instant of the reading")                                          \
+  X(double, centre, 2, "m", "reading: finger centre relative to the ring's")                        \
+  X(double, ring, 2, "m", "ring centre at the reading's instant")                                   \
+  X(double, rays, 16, "m", "reading: 16 free distances, NaN missing")                               \
+  X(double, bodies, 24, "m, rad, s", "6 of each body: x, y, angle, their speeds")                   \
+  X(double, finger_noise, 1, "m", "sd of the reading, each axis; 0: as [finger_filter] noise says") \
+  X(double, commanded, 2, "Nm", "torque that was really commanded since the last step")             \
+  X(double, age, 2, "s", "time from each joint's sample to time_ns, >= 0")
 
 /* X as above. What a tick worked out. Where no contact counts, d_re, d_fe and v_n are NaN. d_fe holds what the
    transition law returned as ethd_ruling.argument: offset returns d_fr + eps, a law that leaves it alone d_fe. */

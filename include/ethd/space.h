@@ -43,33 +43,35 @@ enum {
   ETHD_SPACE_HAVE_READING = 2,      /* reading: a position has arrived, taken at sample_ns */
   ETHD_SPACE_HAVE_READING_V = 4,    /* reading_v, with its reading_v_noise */
   ETHD_SPACE_HAVE_EXTRAPOLATED = 8, /* the tracker has extrapolated the reading to time_ns */
-  ETHD_SPACE_HAVE_NORMAL = 16,  /* normal: where the plate faces. Without it X stands before the plate where that was
+  ETHD_SPACE_HAVE_NORMAL = 16,    /* normal: where the plate faces. Without it X stands before the plate where that was
                                        told to face, and in the face until a first surface is near */
-  ETHD_SPACE_HAVE_ABILITY = 32, /* ability: of this tick, in the place of the setup's */
-  ETHD_SPACE_SURFACES = 64      /* not in `have`: the value of row INPUT for the surfaces */
+  ETHD_SPACE_HAVE_ABILITY = 32,   /* ability: of this tick, in the place of the setup's */
+  ETHD_SPACE_SURFACES = 64,       /* not in `have`: the value of row INPUT for the surfaces */
+  ETHD_SPACE_HAVE_COMMANDED = 128 /* commanded: it counts in the place of the last step's command */
 };
 
 #define ETHD_ABILITY 6 /* numbers of an ethd_ability */
 
 /* X(type, name, count, unit, brief), as ETHD_SENSE_FIELDS */
-#define ETHD_SPACE_SENSE_FIELDS(X)                                                                \
-  X(int64_t, time_ns, 1, "ns", "instant of x and v")                                              \
-  X(int64_t, have, 1, "1", "bits: what this sense holds")                                         \
-  X(int64_t, missed, 1, "1", "whole periods missed since the last step")                          \
-  X(int64_t, step_ns, 1, "ns", "duration of the last step as the caller measured it")             \
-  X(int64_t, faults, 1, "1", "bits: rows of the fault table that device or loop saw")             \
-  X(int64_t, grave, 1, "1", "bits: rows whose second reaction is due")                            \
-  X(double, x, 3, "m", "the end effector: centre of ring or cap, centre of the plate's face")     \
-  X(double, v, 3, "m/s", "its velocity")                                                          \
-  X(double, normal, 3, "1", "unit vector that the plate faces, away from the finger")             \
-  X(double, finger, 3, "m", "finger centre")                                                      \
-  X(double, finger_v, 3, "m/s", "finger velocity")                                                \
-  X(int64_t, sample_ns, 1, "ns", "instant of the reading")                                        \
-  X(double, reading, 3, "m", "reading: finger centre")                                            \
-  X(double, reading_v, 3, "m/s", "reading: finger velocity")                                      \
-  X(double, reading_noise, 1, "m", "sd of the reading, each axis; 0: as the filter's noise says") \
-  X(double, reading_v_noise, 1, "m/s", "sd of its velocity, each axis")                           \
-  X(double, ability, 6, "m/s, m/s2, s, kg, N, N", "along the nearest surface's n; NaN: not known")
+#define ETHD_SPACE_SENSE_FIELDS(X)                                                                 \
+  X(int64_t, time_ns, 1, "ns", "instant of x and v")                                               \
+  X(int64_t, have, 1, "1", "bits: what this sense holds")                                          \
+  X(int64_t, missed, 1, "1", "whole periods missed since the last step")                           \
+  X(int64_t, step_ns, 1, "ns", "duration of the last step as the caller measured it")              \
+  X(int64_t, faults, 1, "1", "bits: rows of the fault table that device or loop saw")              \
+  X(int64_t, grave, 1, "1", "bits: rows whose second reaction is due")                             \
+  X(double, x, 3, "m", "the end effector: centre of ring or cap, centre of the plate's face")      \
+  X(double, v, 3, "m/s", "its velocity")                                                           \
+  X(double, normal, 3, "1", "unit vector that the plate faces, away from the finger")              \
+  X(double, finger, 3, "m", "finger centre")                                                       \
+  X(double, finger_v, 3, "m/s", "finger velocity")                                                 \
+  X(int64_t, sample_ns, 1, "ns", "instant of the reading")                                         \
+  X(double, reading, 3, "m", "reading: finger centre")                                             \
+  X(double, reading_v, 3, "m/s", "reading: finger velocity")                                       \
+  X(double, reading_noise, 1, "m", "sd of the reading, each axis; 0: as the filter's noise says")  \
+  X(double, reading_v_noise, 1, "m/s", "sd of its velocity, each axis")                            \
+  X(double, ability, 6, "m/s, m/s2, s, kg, N, N", "along the nearest surface's n; NaN: not known") \
+  X(double, commanded, 3, "N, m/s", "what was really commanded since the last step")
 
 #define ETHD_NEAR_MAX 16       /* surfaces within range that a tick looks at, the deepest */
 #define ETHD_NEAR_REFUSED (-1) /* `near` of a tick that refused its surfaces (row INPUT) */

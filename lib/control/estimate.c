@@ -47,14 +47,28 @@ static double sample_spacing(const ethd__tick *t) {
   return used ? stamped : t->dt;
 }
 
+/* Returns the time from joint i's last sample to this one, s, where a sample lies `age` before its sense's instant. A
+   sample that comes again has the ticks' time, as in sample_spacing. */
+static double own_spacing(const ethd__tick *t, double dt, int i) {
+  double *last = &t->state->age[i], now = t->sense->have & ETHD_HAVE_AGE ? t->sense->age[i] : 0;
+  const double own = dt + (*last - now);
+  *last = now;
+  return own >= LEAST * t->plan->setup.period ? own : t->dt;
+}
+
 static void joint_speeds(const ethd__tick *t, double qd[2]) {
   const double dt = sample_spacing(t);
   t->state->velocity_ns = t->sense->time_ns;
-  if (t->sense->have & ETHD_HAVE_DQ) {
-    memcpy(qd, t->sense->dq, sizeof t->sense->dq);
-  } else {
-    for (int i = 0; i < 2; i++) qd[i] = joint_speed(t, dt, i);
+  for (int i = 0; i < 2; i++) {
+    const double own = own_spacing(t, dt, i);
+    qd[i] = t->sense->have & ETHD_HAVE_DQ ? t->sense->dq[i] : joint_speed(t, own, i);
   }
+}
+
+/* Gives both joints' angles at the sense's instant. */
+static void joint_angles(const ethd__tick *t, const double qd[2], double q[2]) {
+  memcpy(q, t->sense->q, sizeof t->sense->q);
+  for (int i = 0; i < 2 && t->sense->have & ETHD_HAVE_AGE; i++) q[i] += qd[i] * t->sense->age[i];
 }
 
 /* Returns the instant `s` seconds before another one; wraps round like the clock. */
@@ -201,8 +215,10 @@ static void finger(ethd__tick *t) {
 
 void ethd__estimate(ethd__tick *t) {
   ethd_trace *out = t->trace;
+  double q[2];
   joint_speeds(t, out->qd);
-  ethd__arm_pose(&t->plan->setup.arm, t->sense->q, &t->pose);
+  joint_angles(t, out->qd, q);
+  ethd__arm_pose(&t->plan->setup.arm, q, &t->pose);
   t->ring = (ethd__motion){t->pose.x, ethd_pose_velocity(&t->pose, out->qd)};
   remember(t->state, t->sense->time_ns, t->ring.x);
   finger(t);

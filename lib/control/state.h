@@ -32,6 +32,7 @@ typedef struct ethd__state {
   /* estimates */
   ethd_velocity_state velocity[2];
   int64_t velocity_ns; /* instant of their last sample */
+  double age[2];       /* s by which each joint's sample was older than that */
   ethd_filter_state filter;
   int64_t reading_ns;   /* stamp of the reading that was used last */
   double reading_age;   /* s: how old it was when it was used */

@@ -46,6 +46,14 @@ static bool bodies_are_possible(const ethd_sense *s) {
   return true;
 }
 
+/* Does what the next function does for what a device says of its last command and of its joints' samples. Few do. */
+static bool report_is_possible(const ethd_sense *s, double *which) {
+  *which = ETHD_HAVE_COMMANDED;
+  if ((s->have & ETHD_HAVE_COMMANDED) && !within(s->commanded, ETHD_SENSE_FORCE_MAX)) return false;
+  *which = ETHD_HAVE_AGE;
+  return !(s->have & ETHD_HAVE_AGE) || (within(s->age, ETHD_SENSE_AGE_MAX) && s->age[0] >= 0 && s->age[1] >= 0);
+}
+
 /* Returns true if every number that will be used is possible; else *which is the ETHD_HAVE_* bit of the one that isn't,
    0 for q. */
 static bool input_is_possible(const ethd_sense *s, double *which) {
@@ -59,7 +67,8 @@ static bool input_is_possible(const ethd_sense *s, double *which) {
   *which = ETHD_HAVE_RING;
   if ((s->have & ETHD_HAVE_RING) && !within(s->ring, ETHD_SENSE_LENGTH_MAX)) return false;
   *which = ETHD_HAVE_BODY;
-  return !(s->have & ETHD__HAVE_BODIES) || bodies_are_possible(s);
+  if ((s->have & ETHD__HAVE_BODIES) && !bodies_are_possible(s)) return false;
+  return !(s->have & (ETHD_HAVE_COMMANDED | ETHD_HAVE_AGE)) || report_is_possible(s, which);
 }
 
 static bool joints_are_good(const double joints[4], const double q[2]) {
@@ -95,6 +104,8 @@ static bool note_what_is_wrong(ethd__tick *t) {
   ethd__rows_begin(&t->state->core, t->sense->faults, t->sense->grave);
   bool possible = input_is_possible(t->sense, &which);
   if (!possible) ethd__note_value(&t->state->core, ETHD_FAULT_INPUT, which);
+  if (possible && (t->sense->have & ETHD_HAVE_COMMANDED))
+    memcpy(t->state->guard.last, t->sense->commanded, sizeof t->state->guard.last);
   if (t->plan->has_rare_limits || (t->from && t->from->has_rare_limits)) note_rare_limits(t, possible);
   if (possible && !t->state->core.fault && !(1e-9 * (double)t->sense->step_ns <= t->plan->setup.limits.step_time))
     ethd__note_value(&t->state->core, ETHD_FAULT_BUDGET, (double)t->sense->step_ns);

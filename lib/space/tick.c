@@ -43,6 +43,8 @@ static bool input_is_possible(const ethd__space_tick *t, double *which) {
     return false;
   *which = ETHD_SPACE_HAVE_NORMAL;
   if (s->have & ETHD_SPACE_HAVE_NORMAL && !is_unit(ethd_vec3_of(s->normal))) return false;
+  *which = ETHD_SPACE_HAVE_COMMANDED;
+  if (s->have & ETHD_SPACE_HAVE_COMMANDED && !within(s->commanded, ETHD_SENSE_FORCE_MAX)) return false;
   *which = ETHD_SPACE_SURFACES;
   return surfaces_are_possible(t);
 }
@@ -54,6 +56,7 @@ static bool note_what_is_wrong(ethd__space_tick *t) {
   const bool possible = input_is_possible(t, &which);
   if (!possible) ethd__note_value(core, ETHD_FAULT_INPUT, which);
   if (!possible && which == ETHD_SPACE_SURFACES) t->trace->near = ETHD_NEAR_REFUSED;
+  if (possible && t->sense->have & ETHD_SPACE_HAVE_COMMANDED) t->state->last = ethd_vec3_of(t->sense->commanded);
   ethd__clock_check(core, t->sense->time_ns, t->periods, t->plan->setup.period, t->plan->setup.gap);
   if (possible && !core->fault && !(1e-9 * (double)t->sense->step_ns <= t->plan->setup.step_time))
     ethd__note_value(core, ETHD_FAULT_BUDGET, (double)t->sense->step_ns);

@@ -72,7 +72,9 @@ static bool is_input_fault(const ethd_sense *s) {
   return bad(s->q, ETHD_SENSE_ANGLE_MAX) || ((have & ETHD_HAVE_DQ) && bad(s->dq, ETHD_SENSE_SPEED_MAX)) ||
          ((have & (ETHD_HAVE_FINGER | ETHD_HAVE_START)) && bad(s->finger, ETHD_SENSE_LENGTH_MAX)) ||
          ((have & ETHD_HAVE_FINGER) && bad(s->finger_v, ETHD_SENSE_SPEED_MAX)) ||
-         ((have & ETHD_HAVE_RING) && bad(s->ring, ETHD_SENSE_LENGTH_MAX));
+         ((have & ETHD_HAVE_RING) && bad(s->ring, ETHD_SENSE_LENGTH_MAX)) ||
+         ((have & ETHD_HAVE_COMMANDED) && bad(s->commanded, ETHD_SENSE_FORCE_MAX)) ||
+         ((have & ETHD_HAVE_AGE) && (bad(s->age, ETHD_SENSE_AGE_MAX) || !(s->age[0] >= 0) || !(s->age[1] >= 0)));
 }
 
 typedef struct inputs_tally {
@@ -157,6 +159,7 @@ static const int64_t holds[] = {ETHD_HAVE_DQ,
                                 ETHD_HAVE_RAYS,
                                 ETHD_HAVE_START,
                                 ETHD_HAVE_FINGER,
+                                ETHD_HAVE_COMMANDED | ETHD_HAVE_AGE,
                                 0,
                                 63};
 

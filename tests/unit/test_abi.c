@@ -176,7 +176,7 @@ AT(ethd_figure, unit, 8, 8);
 AT(ethd_figure, value, 16, 8);
 
 /* A driver fills these or returns them: their sizes are in ETHD_DRIVER_ABI. */
-SIZE(ethd_sense, 480, 8);
+SIZE(ethd_sense, 512, 8);
 AT(ethd_sense, time_ns, 0, 8);
 AT(ethd_sense, have, 8, 8);
 AT(ethd_sense, missed, 16, 8);
@@ -193,6 +193,8 @@ AT(ethd_sense, ring, 136, 16);
 AT(ethd_sense, rays, 152, 128);
 AT(ethd_sense, bodies, 280, 192);
 AT(ethd_sense, finger_noise, 472, 8);
+AT(ethd_sense, commanded, 480, 16);
+AT(ethd_sense, age, 496, 16);
 
 SIZE(ethd_limits, 192, 8);
 AT(ethd_limits, size, 0, 4);
@@ -231,7 +233,8 @@ SIZE(ethd_error, 96, 8);
 _Static_assert(ETHD_ABI == 1 && ETHD_STATE_MAX == 512 && ETHD_PARAMS_MAX == 16, "ABI 1");
 _Static_assert(ETHD_DRIVER_ABI >> 28 == 3 && ETHD_MESSAGE_MAX == 512, "the drivers' ABI 3");
 _Static_assert(ETHD_HAVE_DQ == 1 && ETHD_HAVE_FINGER == 2 && ETHD_HAVE_START == 4 && ETHD_HAVE_CENTRE == 8 &&
-                   ETHD_HAVE_RAYS == 16 && ETHD_HAVE_RING == 32 && ETHD_HAVE_BODY == 64 && ETHD_HAVE_WORLD == 1024,
+                   ETHD_HAVE_RAYS == 16 && ETHD_HAVE_RING == 32 && ETHD_HAVE_BODY == 64 && ETHD_HAVE_WORLD == 1024 &&
+                   ETHD_HAVE_COMMANDED == 2048 && ETHD_HAVE_AGE == 4096,
                "what a sense has");
 _Static_assert(ETHD_TRACKING == 0 && ETHD_CONTACT == 1 && ETHD_TRANSITION == 2, "kinds");
 _Static_assert(ETHD_TRANSPARENT == 0 && ETHD_BRAKING == 1 && ETHD_VO == 2, "states");

@@ -48,6 +48,8 @@ FIELDS = (
     Field("rays", "m", tuple(f"r{i}_m" for i in range(16)), (16,)),
     Field("bodies", "m, rad, s", tuple(f"body{i + 1}_{part}" for i in range(4) for part in _BODY), tuple(64 << i for i in range(4) for _ in _BODY)),
     Field("finger_noise", "m", ("finger_noise_m",)),
+    Field("commanded", "Nm", ("commanded1_Nm", "commanded2_Nm"), (2048,)),
+    Field("age", "s", ("age1_s", "age2_s"), (4096,)),
     Field("tick", "1", ("tick",)),
     Field("fault", "1", ("fault",)),
     Field("guard", "1", ("guard",)),

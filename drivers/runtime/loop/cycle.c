@@ -92,13 +92,17 @@ static bool is_pressing(const ethd_sense *s) {
 static void remember_joints(ethd_loop *l, ethd_status status) {
   ethd_sense *s = &l->sense;
   if (status == ETHD_OK) {
-    l->joints = (ethd__joints){s->time_ns, s->have & ETHD_HAVE_DQ, {s->q[0], s->q[1]}, {s->dq[0], s->dq[1]}, 1};
+    l->joints = (ethd__joints){.time_ns = s->time_ns, .have = s->have & (ETHD_HAVE_DQ | ETHD_HAVE_AGE), .known = true};
+    memcpy(l->joints.q, s->q, sizeof s->q);
+    memcpy(l->joints.dq, s->dq, sizeof s->dq);
+    memcpy(l->joints.age, s->age, sizeof s->age);
     return;
   }
   s->time_ns = l->joints.time_ns;
   s->have |= l->joints.have;
   memcpy(s->q, l->joints.q, sizeof s->q);
   memcpy(s->dq, l->joints.dq, sizeof s->dq);
+  memcpy(s->age, l->joints.age, sizeof s->age);
 }
 
 /* A torque isn't held for longer than two steps may be apart. Before the first step after a start none is held, and

@@ -43,7 +43,7 @@ typedef struct ethd__unit {
 /* The last joint sample, as it came. */
 typedef struct ethd__joints {
   int64_t time_ns, have;
-  double q[2], dq[2];
+  double q[2], dq[2], age[2];
   bool known;
 } ethd__joints;
 
