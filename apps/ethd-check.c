@@ -112,7 +112,8 @@ static const ethd_setting *setting(const ethd_config *config, const char *key) {
 static ethd_device *reach_device(const ethd_config *config) {
   char message[ETHD_MESSAGE_MAX];
   ethd_device *d;
-  const ethd_device_def def = {&config->setup, config->settings, config->setting_count, config->folder, arg.config, 0};
+  const ethd_device_def def = {
+      &config->setup, config->settings, config->setting_count, config->folder, arg.config, 0, NULL};
   ethd_status status = arg.open ? ethd_device_open(config->device, NULL, &def, &d, message)
                                 : ethd_device_prepare(config->device, &def, &d, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);

@@ -83,8 +83,8 @@ static int ask_driver(void) {
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   ethd__need_plane(config);
-  const ethd_device_def device = {&config->setup, config->settings, config->setting_count,
-                                  config->folder, config->path,     arg.is_virtual};
+  const ethd_device_def device = {
+      &config->setup, config->settings, config->setting_count, config->folder, config->path, arg.is_virtual, NULL};
   (arg.is_virtual ? ethd__catch_end : ethd__hold_device)();
   const ethd_conform_def def = {config->device, NULL, &device, arg.move ? arg.torque : 0, &ethd__stop};
   status = ethd_conform(&def, answers);

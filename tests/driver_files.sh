@@ -86,7 +86,7 @@ refused() { # NAME EXIT PATTERN
   grep '^table  *BROKEN' "$work/out" >"$work/table" || cp "$work/err" "$work/table" # where the program had to end itself
   says "$1, conform" 1 "$3" "$work/table"
 }
-refused driver_abi 2 'it was built for version 77 of the drivers. interface, this is version 3: '
+refused driver_abi 2 'it was built for version 77 of the drivers. interface, this is version 4: '
 refused driver_no_abi 2 'its table doesn.t say its abi: .abi = ETHD_DRIVER_ABI is needed'
 refused driver_short 2 'its table has 16 bytes, [0-9]* to [0-9]* are allowed'
 refused driver_long 2 'its table has [0-9]* bytes, [0-9]* to [0-9]* are allowed'

@@ -115,7 +115,7 @@ static int lead(int fd, ear *e, ethd_loop *loop, ethd_control *control, ethd_set
 int main(int argc, char **argv) {
   const ethd_setting hand[] = {{"sim.speed", "0.2", 0}, {"sim.meet_x", "0.22", 0}};
   ethd_setup setup = ethd_setup_default();
-  const ethd_device_def device = {&setup, hand, 2, ".", NULL, 0};
+  const ethd_device_def device = {&setup, hand, 2, ".", NULL, 0, NULL};
   ethd_loop_def def = ethd_loop_default();
   ear e = {0};
   double port, seconds;

@@ -161,7 +161,7 @@ static int record(const ethd__excitation *x, const ethd_config *c, double torque
 static double torque_limit(const ethd__excitation *x, const ethd_config *c) {
   char message[ETHD_MESSAGE_MAX];
   ethd_device *device;
-  const ethd_device_def def = {&c->setup, c->settings, c->setting_count, c->folder, c->path, x->is_virtual};
+  const ethd_device_def def = {&c->setup, c->settings, c->setting_count, c->folder, c->path, x->is_virtual, NULL};
   ethd_status status = ethd_device_open(c->device, NULL, &def, &device, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   ethd_limits limits = ethd_device_limits(device);

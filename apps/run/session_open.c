@@ -16,9 +16,13 @@
 
 static ethd_status open_device(ethd__session *s, const char *folder, char *message) {
   ethd_error error = {0};
-  const ethd_device_def def = {&s->config->setup,        s->config->settings,
-                               s->config->setting_count, folder ? folder : s->config->folder,
-                               s->config->path,          s->is_virtual};
+  const ethd_device_def def = {&s->config->setup,
+                               s->config->settings,
+                               s->config->setting_count,
+                               folder ? folder : s->config->folder,
+                               s->config->path,
+                               s->is_virtual,
+                               NULL};
   ethd_status status = ethd_device_open(s->config->device, NULL, &def, &s->device, message);
   if (status) return status;
   const ethd_limits limits = ethd_device_limits(s->device);

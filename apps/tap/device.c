@@ -15,8 +15,8 @@ static ethd_status check_driver(const ethd_config *config, char *message) {
 }
 
 ethd_status ethd__device_read(const ethd_config *config, ethd__sim_settings *out, char message[ETHD_MESSAGE_MAX]) {
-  const ethd_device_def def = {&config->setup, config->settings, config->setting_count,
-                               config->folder, config->path,     1};
+  const ethd_device_def def = {
+      &config->setup, config->settings, config->setting_count, config->folder, config->path, 1, NULL};
   ethd_status status = check_driver(config, message);
   if (status) return status;
   return status ? status : ethd__sim_settings_read(&def, out, message);

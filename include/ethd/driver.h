@@ -5,8 +5,11 @@
    that a run with the same drivers repeats bit for bit; safe [any thread, any state] can't fail: zero torque
    from now on; stop [main] disables; close [main] frees. The simulated device is a driver like any other.
 
+   A driver may have a pair of read and write for each front: read and write for the plane, whose controller is
+   control.h's, and read_space and write_space for space (space.h). A device is opened for one of the two.
+
    Any function but open and close may be NULL: the driver then has nothing to do, to read or to limit there. But a
-   driver that has write must have safe too, because what applies a torque must be able to remove it.
+   driver that has write or write_space must have safe too, because what moves must be able to let go.
 
    One device may consist of several drivers (a servo, its encoders, a proximity ring): each adds its
    values to the sense, and reads its part of the command. They are read and written in the order of their
@@ -29,15 +32,18 @@
 #include "ethd/guard.h"
 #include "ethd/param.h"
 #include "ethd/sense.h"
+#include "ethd/space.h"
 
 ETHD_BEGIN_DECLS
 
-/* The interface's version, 3, in 4 bits, and in eights of bytes the size of each struct that a driver fills or gets, so
-   that none grows unnoticed and a refusal names it: ethd_sense in 10 bits, then 6 each. Never 0, which is a table whose
-   abi wasn't set. */
-#define ETHD_DRIVER_ABI                                                                  \
-  ((uint32_t)(3u << 28 | sizeof(ethd_sense) / 8 << 18 | sizeof(ethd_command) / 8 << 12 | \
-              sizeof(ethd_limits) / 8 << 6 | sizeof(ethd_dynamics) / 8))
+/* The interface's version, 4, in 4 bits, and in eights of bytes the size of each struct that a driver fills or gets, so
+   that none grows unnoticed and a refusal names it: ethd_sense in 7 bits, ethd_space_sense in 6, ethd_limits in 5,
+   ethd_space_command in 4, ethd_command and ethd_dynamics in 3 each. Never 0, which is a table whose abi wasn't set.
+   (ethd_ability is part of ethd_space_sense.) */
+#define ETHD_DRIVER_ABI                                                                                             \
+  ((uint32_t)(4u << 28 | sizeof(ethd_sense) / 8 << 21 | sizeof(ethd_space_sense) / 8 << 15 |                        \
+              sizeof(ethd_limits) / 8 << 10 | sizeof(ethd_space_command) / 8 << 6 | sizeof(ethd_command) / 8 << 3 | \
+              sizeof(ethd_dynamics) / 8))
 #define ETHD_DRIVERS_MAX 4         /* behind one device */
 #define ETHD_DRIVERS_TEXT_MAX 1024 /* bytes of their ids and files in a row, the closing 0 included */
 #define ETHD_DRIVER_FILE "file:"   /* before a path, among drivers' ids */
@@ -53,18 +59,24 @@ typedef struct ethd_setting {
   int line;
 } ethd_setting;
 
-struct ethd_setup; /* of control.h, for drivers that look into it */
-
 /* What a device is opened with. */
 typedef struct ethd_device_def {
-  const struct ethd_setup *setup; /* the controller's: arm, ring, period */
+  const ethd_setup *setup; /* the controller's: arm, ring, period; NULL for a device in space */
   const ethd_setting *settings;
   uint32_t setting_count;
-  const char *folder; /* relative paths in settings start here */
-  const char *file;   /* of the settings, for messages; NULL: they don't come from a file */
-  int32_t is_virtual; /* 1: instants come from a virtual clock, and service waits for nothing; 0: they are
+  const char *folder;            /* relative paths in settings start here */
+  const char *file;              /* of the settings, for messages; NULL: they don't come from a file */
+  int32_t is_virtual;            /* 1: instants come from a virtual clock, and service waits for nothing; 0: they are
                          CLOCK_MONOTONIC's */
+  const ethd_space_setup *space; /* the controller's, for a device in space; NULL: it is in the plane */
 } ethd_device_def;
+
+/* What `safe` leads to. */
+typedef enum ethd_safe_state {
+  ETHD_SAFE_NO_TORQUE = 0, /* nothing drives the joints */
+  ETHD_SAFE_NO_SPEED = 1,  /* the drives hold their places */
+  ETHD_SAFE_BRAKES = 2     /* the brakes are closed */
+} ethd_safe_state;
 
 /* A number about the device for people: "feedback age p99", "s", 0.0012. */
 typedef struct ethd_figure {
@@ -117,6 +129,14 @@ struct ethd_driver {
   /* Returns which joints the device measures: bit 0 joint 1, bit 1 joint 2. It is asked of what `prepare` left, before
      anything is opened: a device with one measured joint alone is refused. NULL: not known, may be both. [main] */
   uint32_t (*joints)(const void *device);
+  /* For a device in space: as read and write. The sense's x and v are those that are commanded where commands are
+     velocities, and those that are measured where they are forces. What was done of a command otherwise than it was
+     asked for, such as one that was scaled to keep a joint's limit, the next sense has in `commanded`. */
+  ethd_status (*read_space)(void *device, int64_t now_ns, ethd_space_sense *out) ETHD_RT;
+  ethd_status (*write_space)(void *device, int64_t now_ns, const ethd_space_command *command) ETHD_RT;
+  /* Returns what the device can do along n, a unit vector, as it stands now. NULL: not known. */
+  ethd_ability (*able)(const void *device, const double n[3]) ETHD_RT;
+  ethd_safe_state safe_is;
 };
 
 ETHD_API extern const ethd_driver ethd_driver_sim, ethd_driver_hello;
@@ -148,13 +168,14 @@ extern ETHD_API const ethd_driver ethd_driver_plugin;
 
 typedef struct ethd_device ethd_device;
 
-/* Opens the drivers that `ids` names ("sim", "servo, ring", "servo, file:mine.so"), in that order, out of `from` (ended
+/* Opens, for the plane or for space, the drivers that `ids` names ("sim", "servo, ring", "servo, file:mine.so"), in that order, out of `from` (ended
    by NULL; NULL: ethd_drivers) and of files, whose paths start at def->folder, as one. With several, a setting's key
    carries its driver's id ("ring.port"); with one it may. Before a driver is opened its
    table is checked: size, ABI, id, brief, settings, and functions that need each other (write and safe, units and
    service): ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_ARGUMENT, ETHD_E_TABLE. ETHD_E_UNKNOWN, ETHD_E_DUPLICATE: an id, or a
    driver's key, with and without its id; ETHD_E_FILE, ETHD_E_LOAD, ETHD_E_SYMBOL: a file; ETHD_E_FULL: more than
-   ETHD_DRIVERS_MAX, or units; ETHD_E_ARGUMENT: one joint alone is measured; else what the driver's open returns.
+   ETHD_DRIVERS_MAX, or units; ETHD_E_ARGUMENT: one joint alone is measured, a driver has no part in such a device, or
+   none takes its commands in space; else what the driver's open returns.
    message holds one line. On failure *out is NULL. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from,
                                                       const ethd_device_def *def, ethd_device **out,
@@ -182,6 +203,23 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_home(ethd_device *device, const
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_read(ethd_device *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_write(ethd_device *device, int64_t now_ns,
                                                        const ethd_command *command) ETHD_RT;
+
+/* The same for a device in space: its drivers' read_space (a driver's ETHD_E_..., ETHD_STATUS_STALE) and write_space.
+   [rt] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_read_space(ethd_device *device, int64_t now_ns,
+                                                            ethd_space_sense *out) ETHD_RT;
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_write_space(ethd_device *device, int64_t now_ns,
+                                                             const ethd_space_command *command) ETHD_RT;
+
+/* Returns what the device can do along n, a unit vector of no unit, as the first of its drivers says that knows it.
+   [any, rt-safe] */
+ETHD_API ethd_ability ethd_device_able(const ethd_device *device, const double n[3]) ETHD_RT;
+
+/* Returns 1 for a device in space, 0 for one in the plane. [any, rt-safe] */
+ETHD_API int32_t ethd_device_in_space(const ethd_device *device) ETHD_RT;
+
+/* Returns what `safe` leads to: of the drivers that take commands, the first one's. [any, rt-safe] */
+ETHD_API ethd_safe_state ethd_device_safe_is(const ethd_device *device) ETHD_RT;
 
 /* Makes all drivers safe; asks all of them to clear their own faults. [any] */
 ETHD_API void ethd_device_safe(ethd_device *device) ETHD_RT;

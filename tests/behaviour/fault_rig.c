@@ -146,7 +146,7 @@ static void open_device(fault_rig *r) {
   snprintf(map, sizeof map, "/tmp/ethd-rig-%d.map", (int)getpid());
   const ethd_setting servo[] = {{"map", map, 1}, {"port", r->server.port, 2}};
   const ethd_setting ring[] = {{"ring.port", board.port, 1}, {"ring.calibration", board.calibration, 2}};
-  ethd_device_def def = {&r->setup, NULL, 0, "apps/config", "rig.ini", 1};
+  ethd_device_def def = {&r->setup, NULL, 0, "apps/config", "rig.ini", 1, NULL};
   char message[ETHD_MESSAGE_MAX];
   if (r->kind == FAULT_COUNTER) def.settings = counter, def.setting_count = 5;
   if (r->kind == FAULT_BUS) def.settings = servo, def.setting_count = 2;

@@ -20,7 +20,7 @@ int is_virtual = 1;
 
 ethd_status open_with(ethd_setting *settings, uint32_t count) {
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, count, folder, "d.ini", is_virtual};
+  const ethd_device_def def = {&setup, settings, count, folder, "d.ini", is_virtual, NULL};
   ethd_status status = servo->open(&def, &device, message);
   if (status && device) servo->close(device), device = NULL;
   return status;

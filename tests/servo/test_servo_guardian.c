@@ -120,7 +120,7 @@ END_TEST
 static ethd_status open_servo(void **device) {
   ethd_setting settings[] = {{"map", "plant.map", 1}, {"port", drive.port, 2}};
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, 2, folder, "d.ini", 0};
+  const ethd_device_def def = {&setup, settings, 2, folder, "d.ini", 0, NULL};
   return servo->open(&def, device, message);
 }
 

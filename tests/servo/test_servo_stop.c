@@ -184,7 +184,7 @@ static void run(const trial *t, ethd_loop *loop, double stop_time) {
 static bool stop(const trial *t, double *stop_time) {
   ethd_setup setup = setup_of(t);
   ethd_setting settings[] = {{"map", "plant.map", 1}, {"port", drive.port, 2}, {"speed", "0.5", 3}};
-  const ethd_device_def device_def = {&setup, settings, 3, folder, "d.ini", 0};
+  const ethd_device_def device_def = {&setup, settings, 3, folder, "d.ini", 0, NULL};
   ethd_loop_def def = ethd_loop_default();
   ethd_control *control;
   ethd_loop *loop;

@@ -146,7 +146,7 @@ static ethd_status open_pair(void) {
   ethd_setting settings[] = {{"map", PAIR, 1}, {"port", drive.port, 2}};
   ck_assert(getcwd(folder, sizeof folder) != NULL);
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, 2, folder, "d.ini", 1};
+  const ethd_device_def def = {&setup, settings, 2, folder, "d.ini", 1, NULL};
   return servo->open(&def, &device, message);
 }
 
@@ -273,7 +273,7 @@ static int is_prepare;
 static ethd_status open_one(const char *ids, const char *path, ethd_device **opened) {
   ethd_setting one[] = {{"servo.map", path, 1}, {"servo.joint", "2", 2}};
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, one, 2, ".", "d.ini", 1};
+  const ethd_device_def def = {&setup, one, 2, ".", "d.ini", 1, NULL};
   return is_prepare ? ethd_device_prepare(ids, &def, opened, message)
                     : ethd_device_open(ids, NULL, &def, opened, message);
 }

@@ -24,7 +24,7 @@ static int sender(void) {
 static ethd_status open_camera(const ethd_setting *settings, uint32_t count, void **device, char *message) {
   static ethd_setup setup;
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, count, ".", "x.ini", 1};
+  const ethd_device_def def = {&setup, settings, count, ".", "x.ini", 1, NULL};
   ethd_status status = ethd_driver_camera.open(&def, device, message);
   if (status && *device) ethd_driver_camera.close(*device), *device = NULL;
   return status;

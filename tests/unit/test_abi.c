@@ -1,4 +1,4 @@
-/* What a plugin or a driver was compiled against may not move: offsets and sizes of ABI 1, and of the drivers' ABI 3, on
+/* What a plugin or a driver was compiled against may not move: offsets and sizes of ABI 1, and of the drivers' ABI 4, on
    a 64-bit machine, and the tables of every law that the library brings. */
 #include <float.h>
 #include <stddef.h>
@@ -156,6 +156,11 @@ AT(ethd_driver, home, 152, 8);
 AT(ethd_driver, why, 160, 8);
 AT(ethd_driver, dynamics, 168, 8);
 AT(ethd_driver, prepare, 176, 8);
+AT(ethd_driver, joints, 184, 8);
+AT(ethd_driver, read_space, 192, 8);
+AT(ethd_driver, write_space, 200, 8);
+AT(ethd_driver, able, 208, 8);
+AT(ethd_driver, safe_is, 216, 4);
 _Static_assert(ETHD_DRIVER_MIN == 128, "least");
 
 AT(ethd_device_def, setup, 0, 8);
@@ -164,6 +169,7 @@ AT(ethd_device_def, setting_count, 16, 4);
 AT(ethd_device_def, folder, 24, 8);
 AT(ethd_device_def, file, 32, 8);
 AT(ethd_device_def, is_virtual, 40, 4);
+AT(ethd_device_def, space, 48, 8);
 
 /* A driver reads arrays of ethd_setting and writes arrays of ethd_figure. */
 SIZE(ethd_setting, 24, 8);
@@ -196,6 +202,26 @@ AT(ethd_sense, finger_noise, 472, 8);
 AT(ethd_sense, commanded, 480, 16);
 AT(ethd_sense, age, 496, 16);
 
+SIZE(ethd_space_sense, 312, 8);
+AT(ethd_space_sense, time_ns, 0, 8);
+AT(ethd_space_sense, have, 8, 8);
+AT(ethd_space_sense, missed, 16, 8);
+AT(ethd_space_sense, step_ns, 24, 8);
+AT(ethd_space_sense, faults, 32, 8);
+AT(ethd_space_sense, grave, 40, 8);
+AT(ethd_space_sense, x, 48, 24);
+AT(ethd_space_sense, v, 72, 24);
+AT(ethd_space_sense, normal, 96, 24);
+AT(ethd_space_sense, finger, 120, 24);
+AT(ethd_space_sense, finger_v, 144, 24);
+AT(ethd_space_sense, sample_ns, 168, 8);
+AT(ethd_space_sense, reading, 176, 24);
+AT(ethd_space_sense, reading_v, 200, 24);
+AT(ethd_space_sense, reading_noise, 224, 8);
+AT(ethd_space_sense, reading_v_noise, 232, 8);
+AT(ethd_space_sense, ability, 240, 48);
+AT(ethd_space_sense, commanded, 288, 24);
+
 SIZE(ethd_limits, 192, 8);
 AT(ethd_limits, size, 0, 4);
 AT(ethd_limits, latch, 4, 4);
@@ -226,12 +252,26 @@ SIZE(ethd_command, 24, 8);
 AT(ethd_command, torque, 0, 16);
 AT(ethd_command, safe, 16, 4);
 
+SIZE(ethd_space_command, 56, 8);
+AT(ethd_space_command, value, 0, 24);
+AT(ethd_space_command, normal, 24, 24);
+AT(ethd_space_command, kind, 48, 4);
+AT(ethd_space_command, safe, 52, 4);
+
+SIZE(ethd_ability, 48, 8);
+AT(ethd_ability, speed, 0, 8);
+AT(ethd_ability, acceleration, 8, 8);
+AT(ethd_ability, delay, 16, 8);
+AT(ethd_ability, mass, 24, 8);
+AT(ethd_ability, force, 32, 8);
+AT(ethd_ability, friction, 40, 8);
+
 /* Written by the library for the refusal of what else differs, so its size never changes. */
 SIZE(ethd_error, 96, 8);
 #endif
 
 _Static_assert(ETHD_ABI == 1 && ETHD_STATE_MAX == 512 && ETHD_PARAMS_MAX == 16, "ABI 1");
-_Static_assert(ETHD_DRIVER_ABI >> 28 == 3 && ETHD_MESSAGE_MAX == 512, "the drivers' ABI 3");
+_Static_assert(ETHD_DRIVER_ABI >> 28 == 4 && ETHD_MESSAGE_MAX == 512, "the drivers' ABI 4");
 _Static_assert(ETHD_HAVE_DQ == 1 && ETHD_HAVE_FINGER == 2 && ETHD_HAVE_START == 4 && ETHD_HAVE_CENTRE == 8 &&
                    ETHD_HAVE_RAYS == 16 && ETHD_HAVE_RING == 32 && ETHD_HAVE_BODY == 64 && ETHD_HAVE_WORLD == 1024 &&
                    ETHD_HAVE_COMMANDED == 2048 && ETHD_HAVE_AGE == 4096,

@@ -163,7 +163,7 @@ static ethd_verdict ask(const char *question, double torque, ethd_status *status
                          .limits = limits};
   const ethd_driver *const from[] = {&driver, NULL};
   const ethd_setup setup = ethd_setup_default();
-  const ethd_device_def device = {&setup, NULL, 0, ".", NULL, 1};
+  const ethd_device_def device = {&setup, NULL, 0, ".", NULL, 1, NULL};
   const ethd_conform_def def = {"fake", from, &device, torque, &halted};
   *status = ethd_conform(&def, answers);
   for (int i = 0; i < ETHD_QUESTIONS; i++) {

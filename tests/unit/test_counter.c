@@ -13,7 +13,7 @@ static const double PER_COUNT = 6.283185307179586 / 48000;
 static ethd_status try(const ethd_setting *settings, uint32_t n, void **device, char *message) {
   static ethd_setup setup;
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, n, NULL, "c.ini", 1};
+  const ethd_device_def def = {&setup, settings, n, NULL, "c.ini", 1, NULL};
   message[0] = 0;
   ethd_status status = D.open(&def, device, message);
   if (status && *device) D.close(*device), *device = NULL; /* as a caller must */

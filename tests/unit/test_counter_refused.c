@@ -16,7 +16,7 @@ static ethd_status try(const char *key, const char *value, void **device) {
   static ethd_setup setup;
   setup = ethd_setup_default();
   const ethd_setting settings[] = {{"ratio", "12", 1}, {key, value, 2}};
-  const ethd_device_def def = {&setup, settings, key ? 2 : 1, NULL, "c.ini", 1};
+  const ethd_device_def def = {&setup, settings, key ? 2 : 1, NULL, "c.ini", 1, NULL};
   message[0] = 0;
   *device = NULL;
   ethd_status status = D.open(&def, device, message);

@@ -117,7 +117,7 @@ static char message[ETHD_MESSAGE_MAX];
 static ethd_status try(const char *ids, const char *k0, const char *k1) {
   const ethd_setting settings[] = {{k0, "1", 7}, {k1, "2", 8}};
   const ethd_setup setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, (k0 != NULL) + (k1 != NULL), ".", "c.ini", 1};
+  const ethd_device_def def = {&setup, settings, (k0 != NULL) + (k1 != NULL), ".", "c.ini", 1, NULL};
   log_[0] = message[0] = 0;
   return ethd_device_open(ids, both, &def, &device, message);
 }
@@ -175,7 +175,7 @@ static const ethd_driver *const only_bare[] = {&bare, &a, NULL};
 
 static ethd_status open_bare(const char *ids) {
   const ethd_setup setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, NULL, 0, ".", NULL, 1};
+  const ethd_device_def def = {&setup, NULL, 0, ".", NULL, 1, NULL};
   log_[0] = message[0] = 0;
   return ethd_device_open(ids, only_bare, &def, &device, message);
 }
@@ -269,7 +269,7 @@ TEST(test_short_table) {
   ck_assert_int_eq(mprotect(at + page, page, PROT_NONE), 0);
   const ethd_driver *const from[] = {table, &b, NULL};
   const ethd_setup setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, NULL, 0, ".", "c.ini", 1};
+  const ethd_device_def def = {&setup, NULL, 0, ".", "c.ini", 1, NULL};
   for (int k = 0; k < 2; k++) {
     ethd_figure f[4];
     ck_assert_int_eq(ethd_device_open(k ? "a, b" : "a", from, &def, &device, message), ETHD_OK);
@@ -285,7 +285,7 @@ TEST(test_short_table) {
 TEST_LOOP(test_settings, 0, sizeof settings / sizeof *settings) {
   const ethd_setting one = {settings[_i].key, settings[_i].value, 7}, *text[2] = {NULL, NULL};
   const ethd_setup setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, &one, 1, ".", "c.ini", 1};
+  const ethd_device_def def = {&setup, &one, 1, ".", "c.ini", 1, NULL};
   double values[2] = {-1, -2};
   bare = (ethd_driver){.id = "bare"};
   message[0] = 0;

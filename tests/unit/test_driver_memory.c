@@ -113,7 +113,7 @@ static ethd_status load_tape(void) {
 static ethd_status open_device(void) {
   const ethd_setup setup = ethd_setup_default();
   const ethd_setting settings[] = {{"inject", "s.inject", 3}, {"excite.torque", "0.2", 4}};
-  const ethd_device_def def = {&setup, settings, 2, folder, "c.ini", 1};
+  const ethd_device_def def = {&setup, settings, 2, folder, "c.ini", 1, NULL};
   ethd_device *device;
   ethd_status status = ethd_device_open("sim, excite", NULL, &def, &device, message);
   if (!status) ethd_device_close(device);

@@ -63,7 +63,7 @@ static void *send_frames(void *unused) {
 static ethd_status open_driver(const ethd_driver *driver, const ethd_setting *settings, uint32_t count, void **device) {
   static ethd_setup setup;
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, count, folder, "x.ini", 1};
+  const ethd_device_def def = {&setup, settings, count, folder, "x.ini", 1, NULL};
   pthread_t thread;
   atomic_store(&stop, 0);
   message[0] = 0;

@@ -107,7 +107,7 @@ static spoilt open_script(const char *text) {
   fclose(f);
   ethd_setup setup = ethd_setup_default();
   const ethd_setting settings[] = {{"inject", name, 3}};
-  const ethd_device_def def = {&setup, settings, 1, NULL, "c.ini", 1};
+  const ethd_device_def def = {&setup, settings, 1, NULL, "c.ini", 1, NULL};
   spoilt x = {.now = 41 * (int64_t)MS};
   ck_assert_msg(!ethd_device_open("plain", only, &def, &x.device, message), "%s", message);
   ck_assert_int_eq(ethd_device_start(x.device), ETHD_OK);
@@ -349,7 +349,7 @@ TEST_LOOP(test_refused, 0, sizeof bad / sizeof *bad) {
 TEST(test_no_file) {
   ethd_setup setup = ethd_setup_default();
   const ethd_setting settings[] = {{"inject", "missing.inject", 3}};
-  const ethd_device_def def = {&setup, settings, 1, "/nowhere", "c.ini", 1};
+  const ethd_device_def def = {&setup, settings, 1, "/nowhere", "c.ini", 1, NULL};
   ethd_device *device;
   char message[ETHD_MESSAGE_MAX] = "";
   ck_assert_int_eq(ethd_device_open("plain", only, &def, &device, message), ETHD_E_FILE);

@@ -105,7 +105,7 @@ static ethd_status open_driver(boards *b, const char *baud, void **device) {
   setup = ethd_setup_default();
   snprintf(path, sizeof path, "%s/ring.ini", folder);
   ck_assert_msg(ethd__calibration_save(&b->truth, path, message) == ETHD_OK, "%s", message);
-  const ethd_device_def def = {&setup, settings, 4, folder, "x.ini", 1};
+  const ethd_device_def def = {&setup, settings, 4, folder, "x.ini", 1, NULL};
   ethd_status status = driver->open(&def, device, message);
   if (status && *device) driver->close(*device), *device = NULL;
   return status;

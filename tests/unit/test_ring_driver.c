@@ -106,7 +106,7 @@ static ethd_status open_or_close(const ethd_device_def *def, void **device) {
 static ethd_status open_with(board *b, const ethd_setting *settings, uint32_t count, void **device) {
   static ethd_setup setup;
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, count, folder, "x.ini", 1};
+  const ethd_device_def def = {&setup, settings, count, folder, "x.ini", 1, NULL};
   atomic_store(&b->stop, 0);
   ck_assert_int_eq(pthread_create(&b->thread, NULL, send_frames, b), 0);
   ethd_status status = open_or_close(&def, device);
@@ -178,7 +178,7 @@ TEST(test_refused_by_what_comes) {
   static const ethd_setting patient[] = {{"port", "port", 1}, {"patience", "30", 2}};
   static ethd_setup setup;
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, 2, folder, "x.ini", 1};
+  const ethd_device_def def = {&setup, settings, 2, folder, "x.ini", 1, NULL};
   board b = {.scene = {rod_truth(1), 5, 0}, .finger = true};
   void *device;
   plug(&b);

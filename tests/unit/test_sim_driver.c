@@ -18,7 +18,7 @@ static ethd_status open_or_close(const ethd_device_def *def, void **device, char
 
 static ethd_status try(const ethd_setting *settings, uint32_t count, void **device, char *message) {
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, count, FOLDER, "c.ini", 1};
+  const ethd_device_def def = {&setup, settings, count, FOLDER, "c.ini", 1, NULL};
   message[0] = 0;
   return open_or_close(&def, device, message);
 }

@@ -105,7 +105,7 @@ TEST(test_zones) {
 static ethd_status open_sim(const char *key, const char *value, ethd_limits *limits, char message[ETHD_MESSAGE_MAX]) {
   const ethd_setting settings[] = {{"finger", key ? "zones" : value, 3}, {key, value, 4}};
   const ethd_setup setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, key ? 2 : 1, "apps/config", "c.ini", 1};
+  const ethd_device_def def = {&setup, settings, key ? 2 : 1, "apps/config", "c.ini", 1, NULL};
   ethd_device *device;
   ethd_status status = ethd_device_open("sim", NULL, &def, &device, message);
   if (status) return status;

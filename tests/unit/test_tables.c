@@ -67,6 +67,10 @@ static ethd_status write_it(void *device, int64_t now, const ethd_command *comma
   return (void)device, (void)now, (void)command, ETHD_OK;
 }
 
+static ethd_status write_in_space(void *device, int64_t now, const ethd_space_command *command) {
+  return (void)device, (void)now, (void)command, ETHD_OK;
+}
+
 static const ethd_driver sound = {.size = sizeof sound,
                                   .abi = ETHD_DRIVER_ABI,
                                   .id = "sound",
@@ -100,16 +104,18 @@ TEST(test_drivers) {
   REFUSED(ETHD_OK, "", d.units = NULL, d.service = NULL);
   REFUSED(ETHD_OK, "", d.write = NULL, d.safe = NULL);
 #define BUILT_FOR(version) \
-  "it was built for version " version " of the drivers' interface, this is version 3: build it with these headers"
+  "it was built for version " version " of the drivers' interface, this is version 4: build it with these headers"
   REFUSED(ETHD_E_ABI, "its table doesn't say its abi: .abi = ETHD_DRIVER_ABI is needed", d.abi = 0);
   REFUSED(ETHD_E_ABI, BUILT_FOR("9"), d.abi = 9);
   REFUSED(ETHD_E_ABI, BUILT_FOR("2"), d.abi = 20736);
-  REFUSED(ETHD_E_ABI, BUILT_FOR("4"), d.abi += 1u << 28);
+  REFUSED(ETHD_E_ABI, BUILT_FOR("5"), d.abi += 1u << 28);
 #define BUILT_WITH(name, there, here) \
   "it was built with an " name " of " there " bytes, here it has " here ": build it with these headers"
-  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_sense", "504", "512"), d.abi -= 1u << 18);
-  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_command", "32", "24"), d.abi += 1u << 12);
-  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_limits", "200", "192"), d.abi += 1u << 6);
+  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_sense", "504", "512"), d.abi -= 1u << 21);
+  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_space_sense", "320", "312"), d.abi += 1u << 15);
+  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_limits", "200", "192"), d.abi += 1u << 10);
+  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_space_command", "64", "56"), d.abi += 1u << 6);
+  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_command", "32", "24"), d.abi += 1u << 3);
   REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_dynamics", "48", "40"), d.abi += 1u);
   REFUSED(ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _", d.id = NULL);
   REFUSED(ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _", d.id = "");
@@ -123,6 +129,9 @@ TEST(test_drivers) {
   REFUSED(ETHD_E_TABLE, "sound: keys: not words, or no NULL behind them", d.keys = many);
   REFUSED(ETHD_E_ARGUMENT, "sound has no open", d.open = NULL);
   REFUSED(ETHD_E_ARGUMENT, "sound has no close", d.close = NULL);
+  REFUSED(ETHD_E_ARGUMENT, "sound takes commands in space and has no safe to end them", d.safe = NULL, d.write = NULL,
+          d.write_space = write_in_space);
+  REFUSED(ETHD_E_ARGUMENT, "sound has a safe_is that isn't one of ethd_safe_state", d.safe_is = (ethd_safe_state)3);
   REFUSED(ETHD_E_ARGUMENT, "sound takes torque and has no safe to remove it", d.safe = NULL);
   REFUSED(ETHD_E_ARGUMENT, "sound has units of I/O and no service", d.service = NULL);
   REFUSED(ETHD_E_ARGUMENT, "sound has a service and no units", d.units = NULL);

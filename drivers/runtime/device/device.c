@@ -1,5 +1,6 @@
 #include "device/device.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -42,6 +43,41 @@ ethd_status ethd_device_write(ethd_device *d, int64_t now_ns, const ethd_command
   for (uint32_t i = 0; i < d->count; i++)
     if (d->at[i].driver->write) status = worse(status, d->at[i].driver->write(d->at[i].state, now_ns, &own));
   return status;
+}
+
+ethd_status ethd_device_read_space(ethd_device *d, int64_t now_ns, ethd_space_sense *out) ETHD_RT {
+  ethd_status status = ETHD_OK;
+  for (uint32_t i = 0; i < d->count; i++)
+    if (d->at[i].driver->read_space) status = worse(status, d->at[i].driver->read_space(d->at[i].state, now_ns, out));
+  return status;
+}
+
+ethd_status ethd_device_write_space(ethd_device *d, int64_t now_ns, const ethd_space_command *command) ETHD_RT {
+  ethd_status status = ETHD_OK;
+  for (uint32_t i = 0; i < d->count; i++)
+    if (d->at[i].driver->write_space)
+      status = worse(status, d->at[i].driver->write_space(d->at[i].state, now_ns, command));
+  return status;
+}
+
+ethd_ability ethd_device_able(const ethd_device *d, const double n[3]) ETHD_RT {
+  const double nan = (double)NAN;
+  for (uint32_t i = 0; i < d->count; i++)
+    if (d->at[i].driver->able) return d->at[i].driver->able(d->at[i].state, n);
+  return (ethd_ability){nan, nan, nan, nan, nan, nan};
+}
+
+int32_t ethd_device_in_space(const ethd_device *d) ETHD_RT { return d->in_space; }
+
+static bool takes_commands(const ethd_device *d, uint32_t i) {
+  const ethd_driver *driver = d->at[i].driver;
+  return d->in_space ? driver->write_space != NULL : driver->write != NULL;
+}
+
+ethd_safe_state ethd_device_safe_is(const ethd_device *d) ETHD_RT {
+  uint32_t i = 0;
+  while (i < d->count && !takes_commands(d, i)) i++;
+  return i < d->count ? d->at[i].driver->safe_is : ETHD_SAFE_NO_TORQUE;
 }
 
 void ethd_device_safe(ethd_device *d) ETHD_RT {
@@ -97,14 +133,14 @@ static ethd_status stop_one(ethd_device *d, uint32_t i) {
   return status;
 }
 
-/* Returns which driver is the i-th to start, from 0, and the i-th from the end to stop. Those that take torques start
+/* Returns which driver is the i-th to start, from 0, and the i-th from the end to stop. Those that take commands start
    last: a drive that is enabled doesn't wait for another driver, however long that takes. */
 static uint32_t turn(const ethd_device *d, uint32_t i) {
   uint32_t order[ETHD_DRIVERS_MAX] = {0}, n = 0;
   for (uint32_t k = 0; k < d->count; k++)
-    if (!d->at[k].driver->write) order[n++] = k;
+    if (!takes_commands(d, k)) order[n++] = k;
   for (uint32_t k = 0; k < d->count; k++)
-    if (d->at[k].driver->write) order[n++] = k;
+    if (takes_commands(d, k)) order[n++] = k;
   return order[i];
 }
 
@@ -158,9 +194,19 @@ uint32_t ethd_device_figures(const ethd_device *d, ethd_figure *out, uint32_t ma
   return n;
 }
 
+/* Says what `safe` leads to; NULL where it is what people expect, no torque in the plane. */
+static const char *safe_remark(const ethd_device *d) {
+  switch (ethd_device_safe_is(d)) {
+  case ETHD_SAFE_NO_SPEED: return "safe is zero speed: the drives hold their places, with all their force";
+  case ETHD_SAFE_BRAKES: return "safe is the brakes: what is caught stays caught until they open";
+  default: return d->in_space ? "safe is zero torque: what no counterweight holds falls" : NULL;
+  }
+}
+
 const char *ethd_device_remark(const ethd_device *d, uint32_t i) {
   const char *own = NULL;
   if (d->inject && !i--) return "faults are injected: don't trust this run";
+  if (safe_remark(d) && !i--) return safe_remark(d);
   for (uint32_t k = 0; k < d->count && !own; k++) {
     if (!d->at[k].driver->remark) continue;
     uint32_t n = 0;

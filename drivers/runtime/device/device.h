@@ -11,6 +11,8 @@
 struct ethd_device {
   uint32_t count;
   pid_t process;        /* that opened the drivers */
+  bool in_space;        /* it has the front of space.h, else the plane's */
+  bool takes;           /* one of its drivers takes commands in space */
   bool only_prepares;   /* nothing is touched: each driver's prepare takes the place of its open */
   unsigned hang_time;   /* s within which a file's code must return */
   char doing[96];       /* what a file's code does, for people */

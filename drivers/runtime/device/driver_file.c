@@ -29,6 +29,8 @@ static bool keys_are_words(const char *const *keys) {
 static const char *functions_fault(const ethd_driver *d) {
   if (!d->open || !d->close) return d->open ? "has no close" : "has no open";
   if (d->write && !d->safe) return "takes torque and has no safe to remove it";
+  if (d->write_space && !d->safe) return "takes commands in space and has no safe to end them";
+  if ((unsigned)d->safe_is > ETHD_SAFE_BRAKES) return "has a safe_is that isn't one of ethd_safe_state";
   if (!d->units != !d->service) return d->units ? "has units of I/O and no service" : "has a service and no units";
   return NULL;
 }
@@ -39,15 +41,19 @@ static const char *functions_fault(const ethd_driver *d) {
 static const struct {
   const char *name;
   uint32_t at, mask, size;
-} sizes[] = {{"ethd_sense", 18, 1023, sizeof(ethd_sense)},
-             {"ethd_command", 12, 63, sizeof(ethd_command)},
-             {"ethd_limits", 6, 63, sizeof(ethd_limits)},
-             {"ethd_dynamics", 0, 63, sizeof(ethd_dynamics)}};
+} sizes[] = {{"ethd_sense", 21, 127, sizeof(ethd_sense)},  {"ethd_space_sense", 15, 63, sizeof(ethd_space_sense)},
+             {"ethd_limits", 10, 31, sizeof(ethd_limits)}, {"ethd_space_command", 6, 15, sizeof(ethd_space_command)},
+             {"ethd_command", 3, 7, sizeof(ethd_command)}, {"ethd_dynamics", 0, 7, sizeof(ethd_dynamics)}};
 
-_Static_assert(sizeof(ethd_sense) <= 8 * 1023 && sizeof(ethd_sense) % 8 == 0, "10 bits of the ABI");
-_Static_assert(sizeof(ethd_command) <= 8 * 63 && sizeof(ethd_command) % 8 == 0, "6 bits of the ABI");
-_Static_assert(sizeof(ethd_limits) <= 8 * 63 && sizeof(ethd_limits) % 8 == 0, "6 bits of the ABI");
-_Static_assert(sizeof(ethd_dynamics) <= 8 * 63 && sizeof(ethd_dynamics) % 8 == 0, "6 bits of the ABI");
+#define FITS(type, bits)                                                                                     \
+  _Static_assert(sizeof(type) < 8u << (bits) && sizeof(type) % 8 == 0, "ETHD_DRIVER_ABI has " #bits " bits " \
+                                                                       "for " #type)
+FITS(ethd_sense, 7);
+FITS(ethd_space_sense, 6);
+FITS(ethd_limits, 5);
+FITS(ethd_space_command, 4);
+FITS(ethd_command, 3);
+FITS(ethd_dynamics, 3);
 
 /* Versions 1 and 2 had no bits of their own: 2 was 20000 and the sum of the sizes. */
 static uint32_t version_of(uint32_t abi) {

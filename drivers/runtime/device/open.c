@@ -66,6 +66,17 @@ static ethd_status check_driver(const naming *n, const ethd_driver *driver) {
   return ethd__say(n->message, status, "%s: device.driver: %.*s", file_of(n->def), ETHD_MESSAGE_MAX / 2, what);
 }
 
+/* Refuses a driver that has nothing for the front that the device is opened for: it may count on a setup that isn't
+   there. */
+static ethd_status check_front(const naming *n, const ethd_driver *driver) {
+  const ethd_driver d = ethd__driver_whole(driver);
+  const bool plane = d.read || d.write, space = d.read_space || d.write_space;
+  n->device->takes |= d.write_space != NULL;
+  if (n->device->in_space ? space : plane || !space) return ETHD_OK;
+  return ethd__say(n->message, ETHD_E_ARGUMENT, "%s: device.driver: %s has no part in a device in %s", file_of(n->def),
+                   d.id, n->device->in_space ? "space" : "the plane");
+}
+
 /* Puts the driver of a name, of `length` bytes, into the stack's next row. */
 static ethd_status add_driver(const naming *n, const char *name, size_t length) {
   ethd_device *s = n->device;
@@ -79,6 +90,7 @@ static ethd_status add_driver(const naming *n, const char *name, size_t length) 
   uint32_t i = s->count;
   s->at[i].driver = known;
   ethd_status status = is_file ? load_driver(n, i, name, length) : check_driver(n, known);
+  if (!status) status = check_front(n, s->at[i].driver);
   for (uint32_t k = 0; !status && k < i; k++)
     if (!strcmp(s->at[k].driver->id, s->at[i].driver->id))
       status = ethd__say(n->message, ETHD_E_DUPLICATE, "%s: device.driver: %s occurs twice", file_of(n->def),
@@ -250,12 +262,20 @@ static ethd_status check_joints(const naming *n, const char *ids) {
                    file_of(n->def), ethd__quote(ids, strlen(ids), quote), measured);
 }
 
+static ethd_status check_takes(const naming *n, const char *ids) {
+  char quote[ETHD_QUOTE_MAX];
+  if (!n->device->in_space || n->device->takes) return ETHD_OK;
+  return ethd__say(n->message, ETHD_E_ARGUMENT, "%s: device.driver: %s: none takes commands in space", file_of(n->def),
+                   ethd__quote(ids, strlen(ids), quote));
+}
+
 static ethd_status open_all(const naming *n, const char *ids) {
   ethd_device *s = n->device;
   ethd_status status = name_drivers(n, ids);
+  if (!status) status = check_takes(n, ids);
   if (!status) status = check_owners(s, n->def, n->message);
   if (!status) status = read_hang_time(s, n->def, n->message);
-  if (!status) status = check_joints(n, ids);
+  if (!status && !s->in_space) status = check_joints(n, ids);
   for (uint32_t i = 0; !status && i < s->count; i++) status = open_one(s, i, n->def, n->message);
   return status;
 }
@@ -281,7 +301,13 @@ static ethd_status open_device(const naming *n, const char *ids, ethd_device **o
   *out = NULL;
   if (!n->device) return ethd__no_memory(n->message, NULL);
   n->device->process = getpid();
+  n->device->in_space = n->def->space != NULL;
   const ethd_setting *script = find_common(n->def, INJECT);
+  if (script && n->device->in_space) {
+    ethd_device_close(n->device);
+    return ethd__say(n->message, ETHD_E_ARGUMENT, "%s:%d: device.inject: a device in space has no faults injected",
+                     file_of(n->def), script->line);
+  }
   ethd_status status = script ? load_script(n, script->value) : ETHD_OK;
   if (!status) status = open_all(n, ids);
   if (status)
