@@ -19,7 +19,7 @@ RT ?= posix
 # Sources of libethd that work on [main] only; every other one must suit the control thread.
 MAIN_SIDE := $(wildcard lib/error.c lib/param.c lib/law/plugin.c lib/scene/parse.c lib/scene/text.c lib/core/named.c lib/control/setup_set.c lib/space/setup_set.c $(addprefix lib/,*_create.c */*check.c */*create.c */*build.c))
 # Sources of the loop that its thread runs: they may sleep and read the clock, no more.
-LOOP_SIDE := drivers/runtime/loop/cycle.c drivers/runtime/loop/histogram.c drivers/runtime/loop/rows.c drivers/servo/tick.c
+LOOP_SIDE := $(addprefix drivers/runtime/loop/,cycle.c front_plane.c front_space.c histogram.c rows.c) drivers/servo/tick.c
 
 SHELL := /bin/sh
 .SUFFIXES:

@@ -3,6 +3,10 @@
 
      sleep until the tick -> driver read -> ethd_control_step -> driver write -> count -> row into a ring
 
+   With a controller of space.h in the place of control.h's, and a device that is opened for space, it does the same:
+
+     -> driver read_space -> surfaces, able -> ethd_space_step -> driver write_space ->
+
    The thread waits on CLOCK_MONOTONIC for absolute instants on a grid of whole periods. A tick that isn't
    done when the next one is due is an overrun: the whole periods that were lost are counted, handed to the
    next step as `missed`, and the loop goes on at the next instant of the grid, never in a burst. In a tick the
@@ -43,6 +47,7 @@
 
 #include "ethd/control.h"
 #include "ethd/driver.h"
+#include "ethd/space.h"
 
 ETHD_BEGIN_DECLS
 
@@ -95,7 +100,7 @@ typedef struct ethd_loop_def {
   uint32_t cookie;          /* set by ethd_loop_default */
   uint32_t bytes;           /* set by ethd_loop_default: the first size that isn't this library's, 0: none */
   ethd_device *device;      /* of ethd_device_open; it is started between create and start */
-  ethd_control *control;    /* only the loop steps it while the loop exists */
+  ethd_control *control;    /* only the loop steps it while the loop exists; NULL: `space` is there */
   double period;            /* s, the controller's (ethd_control_period), 1e-5 to 1; another one is refused */
   int32_t cpu;              /* number of a processor, ETHD_CPU_NONE or ETHD_CPU_AUTO */
   int32_t priority;         /* of SCHED_FIFO, 1 to 99; the device's I/O threads come ETHD_IO_BELOW under it */
@@ -105,12 +110,18 @@ typedef struct ethd_loop_def {
   double gap;               /* s, at least a period: longer lateness, silence and older joint samples are faults;
                             INFINITY: lateness is only counted. The device's own limit holds too */
   double heartbeat;         /* s, at least a period: the longest time between two beats; INFINITY: none is needed */
-  double soft_start;        /* s, 0 to 10: rise time of the torque's share from 0 to 1 after enabling */
+  double soft_start;        /* s, 0 to 10: rise time of the command's share from 0 to 1 after enabling */
   size_t stack;             /* bytes of the loop's stack, 65536 to 2^26; thread-local memory comes on top */
   uint32_t rows;            /* of the ring, a power of two up to 2^20; 0: no rows are kept */
   int64_t *clock;           /* NULL: the system's. Else a virtual clock, ns: the loop sets it to each tick's
                             instant, a driver may move it on */
   const int64_t *suspended; /* ns for which a virtual clock has stood still so far; NULL: it never stands still */
+  ethd_space *space;        /* in the place of `control`, for a device in space; exactly one of the two is there */
+  /* For `space`: fills `out` with the surfaces near the effector of this sense, for the step that follows, and returns
+     how many there are. While nothing is known of the device it isn't asked. NULL: there are none. It is asked within
+     the step's time budget; where it hangs, the device's code seems to. */
+  uint32_t (*surfaces)(void *of, const ethd_space_sense *sense, ethd_surface out[ETHD_SURFACES_MAX]) ETHD_RT;
+  void *surfaces_of;
 } ethd_loop_def;
 
 typedef struct ethd_loop ethd_loop;
@@ -131,6 +142,16 @@ typedef struct ethd_loop_row {
   double heat[2]; /* of the motors when the device was last started, see ethd_control_heat */
 } ethd_loop_row;
 
+/* One tick in space, likewise. The sense's ability is the device's along the normal of the surface that is nearest to the
+   sense's x, unless the driver's read gave one; its `commanded` is what was written, where that wasn't the command as a
+   whole, unless the driver's read knows better. */
+typedef struct ethd_space_row {
+  ethd_space_trace trace;
+  double share;
+  uint64_t lost, swaps;
+  int32_t marks, armed;
+} ethd_space_row;
+
 typedef struct ethd_loop_stats {
   uint64_t ticks;
   uint64_t overruns; /* ticks that weren't done, or not woken, when the next one was due */
@@ -143,20 +164,23 @@ typedef struct ethd_loop_stats {
   ethd_histogram tick;               /* read, step, write */
 } ethd_loop_stats;
 
-/* Fills a definition for ethd_loop_default, with the sizes, bytes, of ethd_loop_def, _row and _stats there. [any] */
-ETHD_API void ethd_loop_fill(ethd_loop_def *def, uint32_t def_size, uint32_t row_size, uint32_t stats_size);
+/* Fills a definition for ethd_loop_default, with the sizes, bytes, of ethd_loop_def, _row and _stats, and of
+   ethd_space_row there. [any] */
+ETHD_API void ethd_loop_fill(ethd_loop_def *def, uint32_t def_size, uint32_t row_size, uint32_t stats_size,
+                             uint32_t space_row_size);
 
 /* Returns 1 ms, no cpu, priority 80, early_wake 0, dma_latency -1, no gap, no heartbeat, soft_start 0.1 s, 256 KiB,
    4096 rows. Headers in which a struct has another size than in this library get a definition that ethd_loop_create
    refuses. [any] */
 static inline ethd_loop_def ethd_loop_default(void) {
   ethd_loop_def def;
-  ethd_loop_fill(&def, (uint32_t)sizeof def, (uint32_t)sizeof(ethd_loop_row), (uint32_t)sizeof(ethd_loop_stats));
+  ethd_loop_fill(&def, (uint32_t)sizeof def, (uint32_t)sizeof(ethd_loop_row), (uint32_t)sizeof(ethd_loop_stats),
+                 (uint32_t)sizeof(ethd_space_row));
   return def;
 }
 
 /* Creates a loop, which doesn't run yet, locks the process's memory and makes the stack of the loop's thread; on a
-   virtual clock neither. ETHD_E_ARGUMENT, ETHD_E_ABI (the driver's table), ETHD_E_RANGE with the field's name or
+   virtual clock neither. ETHD_E_ARGUMENT ("device": it is open for the other front), ETHD_E_ABI (the driver's table), ETHD_E_RANGE with the field's name or
    "units", of which a device has at most ETHD_UNITS_MAX; ETHD_E_MEMORY. ETHD_E_DEVICE: "xenomai" (this kernel has no
    Cobalt), "clock" (Cobalt's and Linux's differ, by error->found s), "thread". [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error);
@@ -213,6 +237,9 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_join(ethd_loop *loop);
 
 /* Takes the next row, in order; ETHD_STATUS_EMPTY when there is none. One reader at a time. [any] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_take(ethd_loop *loop, ethd_loop_row *out);
+
+/* The same for a loop in space. Each of the two returns ETHD_E_ARGUMENT for a loop of the other front. [any] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_take_space(ethd_loop *loop, ethd_space_row *out);
 
 /* Returns ETHD_SHORT_* bits, known once it has started; 0 on a virtual clock. [main] */
 ETHD_API int32_t ethd_loop_shortfalls(const ethd_loop *loop);

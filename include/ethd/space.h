@@ -271,8 +271,18 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_post(ethd_space *space, const et
 /* Takes the next event, in order; ETHD_STATUS_EMPTY when there is none. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_poll(ethd_space *space, ethd_event *out);
 
+/* Returns the period, s, of every setup that this controller has had or can get. [any, rt-safe] */
+ETHD_API double ethd_space_period(const ethd_space *space) ETHD_RT;
+
+/* Returns what it commands, forces or velocities, in every setup. [any, rt-safe] */
+ETHD_API ethd_space_kind ethd_space_commands(const ethd_space *space) ETHD_RT;
+
 /* Resets the state to that after create, under the setup that rules. Must not be called while step runs. [main] */
 ETHD_API void ethd_space_reset(ethd_space *space);
+
+/* Resets all but what the transition law has learnt of the device, for a device that is enabled again. Must not be called
+   while step runs. [main] */
+ETHD_API void ethd_space_restart(ethd_space *space);
 
 /* Acknowledges a latched fault, as ethd_control_acknowledge does. [any, rt-safe] */
 ETHD_API void ethd_space_acknowledge(ethd_space *space) ETHD_RT;
@@ -291,6 +301,14 @@ ETHD_API double ethd_space_clean_time(const ethd_space *space) ETHD_RT;
    command brakes as guard.h says; then `safe` is set. After ZERO the command is zero at once, with `safe`. [rt] */
 ETHD_API ethd_status ethd_space_step(ethd_space *space, const ethd_space_sense *sense, const ethd_surface *surfaces,
                                      uint32_t count, ethd_space_command *command, ethd_space_trace *trace) ETHD_RT;
+
+/* Runs the same tick on a copy of the state, as ethd_control_rehearse does. Returns what ethd_space_step would
+   (ETHD_E_...). [rt] */
+ETHD_API ethd_status ethd_space_rehearse(ethd_space *space, const ethd_space_sense *sense, const ethd_surface *surfaces,
+                                         uint32_t count, ethd_space_command *command) ETHD_RT;
+
+/* Returns the law whose code a step runs at this moment, as ethd_control_law does. [any, rt-safe] */
+ETHD_API const ethd_law *ethd_space_law(const ethd_space *space) ETHD_RT;
 
 /* Gives the counters. [any], between steps. */
 ETHD_API void ethd_space_counters(const ethd_space *space, ethd_counters *out) ETHD_RT;

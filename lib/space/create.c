@@ -14,6 +14,8 @@ ethd_status ethd_space_create(const ethd_space_setup *setup, ethd_space **out, e
     free(space);
     return status;
   }
+  space->period = setup->period;
+  space->kind = setup->kind;
   ethd_space_reset(space);
   *out = space;
   return ETHD_OK;

@@ -62,6 +62,35 @@ ethd_status ethd_space_step(ethd_space *space, const ethd_space_sense *sense, co
   return status;
 }
 
+ETHD__FP_APART static ethd_status rehearse(ethd_space *space, ethd__space_tick *t, ethd_space_command *command) {
+  memcpy(&space->scratch, &space->state, sizeof space->scratch);
+  t->core.soft = false;
+  t->from = NULL;
+  t->plan = &space->plans[space->mail.ruling];
+  t->state = &space->scratch;
+  t->scratch = NULL;
+  ethd__space_tick_run(t);
+  return finish(t, command);
+}
+
+ethd_status ethd_space_rehearse(ethd_space *space, const ethd_space_sense *sense, const ethd_surface *surfaces,
+                                uint32_t count, ethd_space_command *command) {
+  ethd_space_trace own;
+  ethd__space_tick t;
+  t.sense = sense;
+  t.surfaces = surfaces;
+  t.count = count;
+  t.trace = &own;
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = rehearse(space, &t, command);
+  ethd__fp_give(callers);
+  return status;
+}
+
+double ethd_space_period(const ethd_space *space) { return space->period; }
+
+ethd_space_kind ethd_space_commands(const ethd_space *space) { return space->kind; }
+
 ETHD__FP_APART static void reset(ethd_space *space) {
   memset(&space->state, 0, sizeof space->state);
   resume(&space->plans[space->mail.ruling], &space->state);
@@ -73,12 +102,24 @@ void ethd_space_reset(ethd_space *space) {
   ethd__fp_give(callers);
 }
 
+void ethd_space_restart(ethd_space *space) {
+  double memory[ETHD_MEMORY];
+  memcpy(memory, space->state.core.memory, sizeof memory);
+  ethd_space_reset(space);
+  memcpy(space->state.core.memory, memory, sizeof memory);
+}
+
 ethd_status ethd_space_poll(ethd_space *space, ethd_event *out) { return ethd__mail_poll(&space->mail, out); }
 
 void ethd_space_acknowledge(ethd_space *space) { atomic_store_explicit(&space->mail.clear, 1, memory_order_relaxed); }
 
 double ethd_space_clean_time(const ethd_space *space) {
   return ethd__core_clean_time(&space->state.core, space->plans[space->mail.ruling].setup.period);
+}
+
+const ethd_law *ethd_space_law(const ethd_space *space) {
+  const ethd_law *law = ethd__fence_runs(&space->state.core);
+  return law ? law : ethd__fence_runs(&space->scratch.core);
 }
 
 void ethd_space_counters(const ethd_space *space, ethd_counters *out) { *out = space->state.core.counters; }

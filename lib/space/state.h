@@ -27,6 +27,8 @@ struct ethd_space {
   ethd__space_plan plans[2];
   ethd__space_state state, scratch;
   ethd__mail mail;
+  double period; /* s; this and the next never change */
+  ethd_space_kind kind;
 };
 
 /* A tick in the making. */

@@ -14,11 +14,13 @@ static const struct {
   uint32_t size;
 } sized[] = {{"ethd_loop_def", sizeof(ethd_loop_def)},
              {"ethd_loop_row", sizeof(ethd_loop_row)},
-             {"ethd_loop_stats", sizeof(ethd_loop_stats)}};
+             {"ethd_loop_stats", sizeof(ethd_loop_stats)},
+             {"ethd_space_row", sizeof(ethd_space_row)}};
 #define SIZED (sizeof sized / sizeof *sized)
 
-void ethd_loop_fill(ethd_loop_def *def, uint32_t def_size, uint32_t row_size, uint32_t stats_size) {
-  const uint32_t there[SIZED] = {def_size, row_size, stats_size};
+void ethd_loop_fill(ethd_loop_def *def, uint32_t def_size, uint32_t row_size, uint32_t stats_size,
+                    uint32_t space_row_size) {
+  const uint32_t there[SIZED] = {def_size, row_size, stats_size, space_row_size};
   uint32_t i = 0;
   while (i < SIZED && there[i] == sized[i].size) i++;
   memset(def, 0, def_size);
@@ -44,9 +46,13 @@ static ethd_status within(ethd_error *error, const char *name, double found, dou
   return ethd__loop_refuse(error, ETHD_E_RANGE, name, found, min, max);
 }
 
+static const ethd__front *front_of(const ethd_loop_def *d) {
+  return d->space ? &ethd__front_space : &ethd__front_plane;
+}
+
 /* The controller takes its speeds from its own period, whatever the clock says: at another one they would be wrong. */
 static ethd_status check_period(const ethd_loop_def *d, ethd_error *error) {
-  double period = ethd_control_period(d->control);
+  double period = front_of(d)->period(d);
   if (d->period == period) return ETHD_OK;
   return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "period", d->period, period, period);
 }
@@ -57,7 +63,10 @@ static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
     return ethd__loop_refuse(error, ETHD_E_SIZE, sized[skewed].name, d->bytes, sized[skewed].size, sized[skewed].size);
   if (d->cookie != COOKIE) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "ethd_loop_def", NAN, NAN, NAN);
   if (!d->device) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "device", NAN, NAN, NAN);
-  if (!d->control) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "control", NAN, NAN, NAN);
+  if (!d->control == !d->space)
+    return ethd__loop_refuse(error, ETHD_E_ARGUMENT, d->space ? "control and space" : "control", NAN, NAN, NAN);
+  if (ethd_device_in_space(d->device) != (d->space != NULL))
+    return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "device", NAN, NAN, NAN);
   if (d->rows & (d->rows - 1)) return ethd__loop_refuse(error, ETHD_E_RANGE, "rows", d->rows, 0, 0x1p20);
   ethd_status status = within(error, "period", d->period, 1e-5, 1);
   if (!status) status = within(error, "cpu", d->cpu, ETHD_CPU_AUTO, 1023);
@@ -93,6 +102,7 @@ ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_err
   if (!l) return ethd__loop_refuse(error, ETHD_E_MEMORY, "loop", NAN, NAN, NAN);
   memset(l, 0, size);
   l->def = *def;
+  l->front = front_of(def);
   l->period = llrint(1e9 * def->period);
   l->early = llrint(1e9 * def->early_wake);
   l->gap = nanoseconds(gap_of(def));
@@ -103,7 +113,8 @@ ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_err
   l->heartbeat = nanoseconds(def->heartbeat);
   l->dma_latency = -1;
   l->rows.size = def->rows;
-  l->rows.at = calloc(def->rows ? def->rows : 1, sizeof *l->rows.at);
+  l->rows.bytes = l->front->row;
+  l->rows.at = calloc(def->rows ? def->rows : 1, l->rows.bytes);
   if (!l->rows.at) status = ethd__loop_refuse(error, ETHD_E_MEMORY, "rows", NAN, NAN, NAN);
   if (!status && !def->clock) status = ethd__loop_ask_machine(l, error);
   if (status) {

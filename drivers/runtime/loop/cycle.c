@@ -54,18 +54,16 @@ static void push(ethd_loop *l) {
   ethd__loop_ring *r = &l->rows;
   if (!r->size) return;
   if (!room(r)) {
-    l->lost++;
+    l->tail.lost++;
     raise(&l->stats.rows_lost, 1);
     return;
   }
   unsigned head = atomic_load_explicit(&r->head, memory_order_relaxed);
-  l->row.lost = l->lost;
-  l->row.swaps = l->swaps;
-  l->row.marks = l->marks;
-  r->at[head % r->size] = l->row;
+  memcpy((char *)&l->row + l->front->tail, &l->tail, sizeof l->tail);
+  memcpy(r->at + (head % r->size) * r->bytes, &l->row, r->bytes);
   atomic_store_explicit(&r->head, head + 1, memory_order_release);
-  l->lost = 0;
-  l->marks = 0;
+  l->tail.lost = 0;
+  l->tail.marks = 0;
 }
 
 /* ---- one tick ---- */
@@ -73,14 +71,14 @@ static void push(ethd_loop *l) {
 /* Nothing is known about a device that can't be read, so the controller gets NaN and reports its input fault. */
 static void blind(ethd_loop *l) {
   raise(&l->stats.read_failures, 1);
-  l->sense.have = 0;
-  l->sense.time_ns = l->due;
-  l->sense.q[0] = l->sense.q[1] = (double)NAN;
+  l->sense.head.have = 0;
+  l->sense.head.time_ns = l->due;
+  l->front->blind(l);
 }
 
 /* A row that takes the torque away is acted on at once. A stop waits for the next sample: from an old one the ring's
    speed would seem to fall. Should none come, row FEEDBACK_OLD ends the torque. */
-static bool is_pressing(const ethd_sense *s) {
+static bool is_pressing(const ethd__sense_head *s) {
   for (int64_t rows = s->faults | s->grave; rows; rows &= rows - 1) {
     ethd_fault row = (ethd_fault)__builtin_ctzll((uint64_t)rows);
     if (ethd_fault_reaction(row, s->grave >> row & 1) > ETHD_REACTION_STOP) return true;
@@ -88,29 +86,12 @@ static bool is_pressing(const ethd_sense *s) {
   return 0;
 }
 
-/* A step without a newer sample uses the last one for the joints. */
-static void remember_joints(ethd_loop *l, ethd_status status) {
-  ethd_sense *s = &l->sense;
-  if (status == ETHD_OK) {
-    l->joints = (ethd__joints){.time_ns = s->time_ns, .have = s->have & (ETHD_HAVE_DQ | ETHD_HAVE_AGE), .known = true};
-    memcpy(l->joints.q, s->q, sizeof s->q);
-    memcpy(l->joints.dq, s->dq, sizeof s->dq);
-    memcpy(l->joints.age, s->age, sizeof s->age);
-    return;
-  }
-  s->time_ns = l->joints.time_ns;
-  s->have |= l->joints.have;
-  memcpy(s->q, l->joints.q, sizeof s->q);
-  memcpy(s->dq, l->joints.dq, sizeof s->dq);
-  memcpy(s->age, l->joints.age, sizeof s->age);
-}
-
 /* A torque isn't held for longer than two steps may be apart. Before the first step after a start none is held, and
    the device may take a little longer. */
 static void watch_age(ethd_loop *l, ethd_status status) {
   l->stale = status > 0 ? l->stale + 1 : 0;
   if (l->stale > (l->ramp ? l->hold : ETHD__HOLD_MAX / l->period))
-    l->sense.faults |= ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD);
+    l->sense.head.faults |= ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD);
 }
 
 static void disarm(ethd_loop *l) {
@@ -121,46 +102,41 @@ static void disarm(ethd_loop *l) {
 
 /* False when there is no newer sample than at the last step: the torque is then held, unless the loop was disarmed. */
 static bool read_device(ethd_loop *l) {
-  if (!l->held) memset(&l->sense, 0, sizeof l->sense);
-  ethd_status status = ethd_device_read(l->def.device, l->due, &l->sense);
+  ethd_status status = l->front->read(l);
   watch_age(l, status);
-  ethd__loop_rows(l, &l->sense);
-  if (status > 0 && !is_pressing(&l->sense)) {
+  ethd__loop_rows(l, &l->sense.head);
+  if (status > 0 && !is_pressing(&l->sense.head)) {
     if (!atomic_load_explicit(&l->armed, memory_order_relaxed)) disarm(l);
     l->held++;
     l->missed++;
     return false;
   }
-  if (status < 0 || (status > 0 && !l->joints.known))
+  l->known |= status == ETHD_OK;
+  if (status < 0 || !l->known)
     blind(l);
   else
-    remember_joints(l, status);
+    l->front->remember(l, status == ETHD_OK);
   l->held = 0;
-  l->sense.missed = l->missed;
-  l->sense.step_ns = l->step;
+  l->sense.head.missed = l->missed;
+  l->sense.head.step_ns = l->step;
   return 1;
 }
 
-/* The share of the torque that the device gets. Periods that a slow bus leaves without a step count as well. */
+/* The share of the command that the device gets. Periods that a slow bus leaves without a step count as well. */
 static double share(ethd_loop *l) {
-  if (l->ramp) l->ramp += l->sense.missed;
+  if (l->ramp) l->ramp += l->sense.head.missed;
   double t = (double)l->ramp++ * l->def.period;
   return t < l->def.soft_start ? t / l->def.soft_start : 1;
 }
 
-static void write_device(ethd_loop *l, ethd_command *command) {
-  double s = 0;
-  if (command->safe || !atomic_load_explicit(&l->armed, memory_order_relaxed)) {
+static void write_device(ethd_loop *l) {
+  if (l->front->is_safe(l) || !atomic_load_explicit(&l->armed, memory_order_relaxed))
     disarm(l);
-    *command = (ethd_command){.safe = 1};
-  } else {
+  else
     l->was_armed = 1;
-    s = share(l);
-    for (int i = 0; i < 2; i++) command->torque[i] *= s;
-  }
-  l->row.share = s;
-  l->row.armed = l->was_armed;
-  if (ethd_device_write(l->def.device, l->due, command) >= 0) return;
+  l->tail.share = l->was_armed ? share(l) : 0;
+  l->tail.armed = l->was_armed;
+  if (l->front->write(l, l->was_armed, l->tail.share) >= 0) return;
   raise(&l->stats.write_failures, 1);
   disarm(l);
 }
@@ -178,37 +154,35 @@ static void end_step(ethd_loop *l) {
   for (;;) (void)!sleep_until(l, ethd__loop_now(l) + 1000000000);
 }
 
-static void step(ethd_loop *l, ethd_command *command) {
+static void step(ethd_loop *l) {
   if (atomic_load_explicit(&l->clear, memory_order_relaxed)) {
     atomic_store_explicit(&l->clear, 0, memory_order_relaxed);
-    ethd_control_acknowledge(l->def.control);
-    l->marks |= ETHD_ROW_CLEARED;
+    l->front->acknowledge(l);
+    l->tail.marks |= ETHD_ROW_CLEARED;
   }
   int64_t begin = begin_step(l);
-  if (l->dry) (void)!ethd_control_rehearse(l->def.control, &l->sense, command);
+  if (l->front->look) l->front->look(l);
+  if (l->dry) l->front->rehearse(l);
   if (l->dry) begin = ethd__loop_now(l);
   l->dry = 0;
-  (void)!ethd_control_step(l->def.control, &l->sense, command, &l->row.trace);
+  l->tail.swaps += l->front->step(l);
   l->step = ethd__loop_now(l) - begin;
   end_step(l);
-  l->swaps += l->row.trace.swap != 0;
   l->missed = 0;
 }
 
 static void tick(ethd_loop *l) {
-  ethd_command command;
   raise(&l->stats.ticks, 1);
   if (!read_device(l)) return;
-  step(l, &command);
-  write_device(l, &command);
+  step(l);
+  write_device(l);
   push(l);
 }
 
 void ethd__loop_rest(ethd_loop *l) {
-  ethd_command zero = {.safe = 1};
   l->was_armed = 1;
   disarm(l);
-  (void)!ethd_device_write(l->def.device, l->due, &zero);
+  (void)!l->front->write(l, false, 0);
 }
 
 /* ---- the grid ---- */
@@ -228,9 +202,8 @@ static int wait(ethd_loop *l) {
   int64_t now = ethd__loop_now(l), late = now - (l->due - l->early);
   ethd_histogram_add(&l->stats.wake, late);
   if (l->early && !l->dry) {
-    ethd_command command;
     (void)begin_step(l);
-    for (int i = 0; i < REHEARSALS; i++) (void)!ethd_control_rehearse(l->def.control, &l->sense, &command);
+    for (int i = 0; i < REHEARSALS; i++) l->front->rehearse(l);
     end_step(l);
     while (!l->def.clock && (now = ethd__loop_now(l)) < l->due) continue;
   }

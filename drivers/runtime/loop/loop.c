@@ -32,7 +32,7 @@ int32_t ethd_loop_ended(const ethd_loop *l) {
 
 int32_t ethd_loop_hangs(const ethd_loop *l, const ethd_law **law) {
   int32_t hangs = atomic_load_explicit(&l->hangs, memory_order_acquire) && !ethd__loop_is_forked(l);
-  if (law) *law = hangs ? ethd_control_law(l->def.control) : NULL;
+  if (law) *law = hangs ? l->front->law(l) : NULL;
   return hangs;
 }
 
@@ -48,13 +48,21 @@ void ethd_loop_raise(ethd_loop *l, ethd_fault fault) {
 
 void ethd_loop_stop(ethd_loop *l) { atomic_store_explicit(&l->stop, 1, memory_order_relaxed); }
 
-ethd_status ethd_loop_take(ethd_loop *l, ethd_loop_row *out) {
+static ethd_status take(ethd_loop *l, void *out) {
   ethd__loop_ring *r = &l->rows;
   unsigned tail = atomic_load_explicit(&r->tail, memory_order_relaxed);
   if (tail == atomic_load_explicit(&r->head, memory_order_acquire)) return ETHD_STATUS_EMPTY;
-  *out = r->at[tail % r->size];
+  memcpy(out, r->at + (tail % r->size) * r->bytes, r->bytes);
   atomic_store_explicit(&r->tail, tail + 1, memory_order_release);
   return ETHD_OK;
+}
+
+ethd_status ethd_loop_take(ethd_loop *l, ethd_loop_row *out) {
+  return l->front == &ethd__front_plane ? take(l, out) : ETHD_E_ARGUMENT;
+}
+
+ethd_status ethd_loop_take_space(ethd_loop *l, ethd_space_row *out) {
+  return l->front == &ethd__front_space ? take(l, out) : ETHD_E_ARGUMENT;
 }
 
 static uint64_t seen(const uint64_t *count) { return __atomic_load_n(count, __ATOMIC_RELAXED); }
@@ -72,7 +80,7 @@ static void read_faults(const ethd_loop *l, uint64_t out[ETHD_FAULT_COUNT]) {
   ethd_counters now = {0};
   int64_t raised = 0;
   if (l->def.clock || ethd_loop_ended(l))
-    ethd_control_counters(l->def.control, &now);
+    l->front->counters(l, &now);
   else if (ethd_loop_hangs(l, NULL))
     raised = atomic_load_explicit(&l->raised, memory_order_relaxed);
   for (int i = 0; i < ETHD_FAULT_COUNT; i++)

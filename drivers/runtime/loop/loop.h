@@ -8,6 +8,7 @@
 #include <sys/types.h>
 
 #include "ethd/loop.h"
+#include "loop/front.h"
 #include "loop/rt.h"
 
 /* Who may use device and controller: the loop, or [main] while it enables the device. */
@@ -31,7 +32,8 @@ typedef struct ethd__loop_ring {
   _Alignas(64) atomic_uint head; /* next to write, [rt] */
   _Alignas(64) atomic_uint tail; /* next to read */
   uint32_t size;
-  ethd_loop_row *at;
+  size_t bytes; /* of a row */
+  char *at;
 } ethd__loop_ring;
 
 typedef struct ethd__unit {
@@ -40,15 +42,9 @@ typedef struct ethd__unit {
   pthread_t thread;
 } ethd__unit;
 
-/* The last joint sample, as it came. */
-typedef struct ethd__joints {
-  int64_t time_ns, have;
-  double q[2], dq[2], age[2];
-  bool known;
-} ethd__joints;
-
 struct ethd_loop {
   ethd_loop_def def;
+  const ethd__front *front;
   int64_t period, early;  /* ns */
   int64_t gap, heartbeat; /* ns; INT64_MAX: none */
 
@@ -59,9 +55,8 @@ struct ethd_loop {
   int64_t ramp;   /* armed ticks since the start */
   bool dry;       /* 1: the next step is rehearsed first */
   int32_t held;   /* ticks since the last one that stepped */
-  int64_t stale;  /* ticks since the last joint sample */
+  int64_t stale;  /* ticks since the last sample of joints or effector */
   int64_t hold;   /* ticks for which a torque may be held without one */
-  int32_t marks;
   bool was_armed;
   int64_t late;    /* ns: the longest overrun since the last step */
   int64_t ahead;   /* ns: upper bound of CLOCK_BOOTTIME minus the loop's clock */
@@ -69,10 +64,19 @@ struct ethd_loop {
   int64_t bucket;  /* the leaky bucket of overruns */
   int64_t beat_at; /* ns: the tick that saw the application's last beat; 0: none has */
   unsigned beats_seen;
-  uint64_t lost, swaps;
-  ethd_sense sense;
-  ethd__joints joints;
-  ethd_loop_row row;
+  ethd__row_tail tail; /* of the next row */
+  ethd__front_sense sense;
+  union {
+    ethd__joints joints;
+    ethd__effector effector;
+  } last;     /* sample */
+  bool known; /* there is one */
+  union {
+    ethd_command plane;
+    ethd_space_command space;
+  } command;
+  ethd__near near;
+  ethd__front_row row;
   ethd_loop_stats stats;
 
   _Alignas(64) atomic_int mode, armed, clear, stop, ended, failed;
@@ -114,7 +118,7 @@ void ethd__loop_late(ethd_loop *loop, int64_t ns) ETHD_RT;
 void ethd__loop_ahead(ethd_loop *loop, int64_t least, int64_t most) ETHD_RT;
 
 /* Adds the rows of the fault table that the loop sees at this tick; once a tick. [rt] */
-void ethd__loop_rows(ethd_loop *loop, ethd_sense *sense) ETHD_RT;
+void ethd__loop_rows(ethd_loop *loop, ethd__sense_head *sense) ETHD_RT;
 
 /* Writes zero torque, as the last thing that the loop does. [rt] */
 void ethd__loop_rest(ethd_loop *loop) ETHD_RT;

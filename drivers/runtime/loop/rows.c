@@ -22,7 +22,7 @@ void ethd__loop_ahead(ethd_loop *l, int64_t least, int64_t most) {
   l->missed += slept / l->period;
 }
 
-static void suspended(ethd_loop *l, ethd_sense *sense) {
+static void suspended(ethd_loop *l, ethd__sense_head *sense) {
   int64_t *rows = l->slept > l->gap ? &sense->grave : &sense->faults;
   *rows |= ETHD_FAULT_BIT(ETHD_FAULT_CLOCK);
   l->slept = 0;
@@ -45,7 +45,7 @@ static int64_t heartbeat(ethd_loop *l) {
   return l->due - l->beat_at > l->heartbeat ? ETHD_FAULT_BIT(ETHD_FAULT_APPLICATION) : 0;
 }
 
-void ethd__loop_rows(ethd_loop *l, ethd_sense *sense) {
+void ethd__loop_rows(ethd_loop *l, ethd__sense_head *sense) {
   if (l->step > ETHD__LOOP_STEP_MAX) sense->faults |= ETHD_FAULT_BIT(ETHD_FAULT_BUDGET);
   if (atomic_load_explicit(&l->raised, memory_order_relaxed))
     sense->faults |= atomic_exchange_explicit(&l->raised, 0, memory_order_relaxed);

@@ -139,8 +139,8 @@ static void arm(ethd_loop *l) {
   l->ahead = ethd__loop_boot(l) - now;
   l->missed = l->step = l->stale = l->ramp = l->bucket = l->late = l->slept = l->beat_at = 0;
   l->dry = 1;
-  l->marks |= ETHD_ROW_STARTED;
-  ethd_control_heat(l->def.control, l->row.heat);
+  l->tail.marks |= ETHD_ROW_STARTED;
+  l->front->start(l);
   atomic_store_explicit(&l->armed, 1, memory_order_relaxed);
 }
 
@@ -186,9 +186,9 @@ ethd_status ethd_loop_enable(ethd_loop *l) {
   ethd_status status = ethd_device_start(l->def.device);
   if (!status) {
     ethd_counters counters;
-    ethd_control_counters(l->def.control, &counters);
+    l->front->counters(l, &counters);
     for (int i = 0; i < ETHD_FAULT_COUNT; i++) l->faults[i] += counters.faults[i];
-    ethd_control_restart(l->def.control);
+    l->front->restart(l);
     arm(l);
   } else {
     ethd_loop_disarm(l); /* the device's state is unknown */
@@ -205,7 +205,7 @@ ethd_status ethd_loop_home(ethd_loop *l, const double *q) {
   if (q && !are_angles(q)) return ETHD_E_RANGE;
   if (ethd_loop_armed(l) || !take_over(l)) return ETHD_STATUS_BUSY;
   ethd_status status = ethd_device_home(l->def.device, q);
-  if (!status && !l->row.trace.fault) ethd_control_restart(l->def.control);
+  if (!status && !l->front->has_fault(l)) l->front->restart(l);
   atomic_store_explicit(&l->mode, ETHD__LOOP_RUNS, memory_order_release);
   return status;
 }
