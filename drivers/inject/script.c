@@ -11,26 +11,29 @@
 
 #define BLANKS " \t\r"
 #define BIT(kind) (1u << ETHD__INJECT_##kind)
+#define NOT (-1)
 #define VALUES (BIT(FREEZE) | BIT(OFFSET) | BIT(REVERSE) | BIT(SCALE) | BIT(NOISE) | BIT(SET_TO) | BIT(NAN))
 
 static const struct {
   const char *name;
-  uint32_t numbers; /* 0: the name has none */
+  int32_t plane, space; /* numbers of the name in each front; 0: it has none; NOT: the front doesn't know it */
   uint32_t kinds;
 } channels[ETHD__INJECT_CHANNELS] = {
-    [ETHD__INJECT_Q] = {"q", 2, VALUES},
-    [ETHD__INJECT_DQ] = {"dq", 2, VALUES},
-    [ETHD__INJECT_CENTRE] = {"centre", 2, VALUES},
-    [ETHD__INJECT_FINGER] = {"finger", 2, VALUES},
-    [ETHD__INJECT_RING] = {"ring", 2, VALUES},
-    [ETHD__INJECT_RAY] = {"ray", ETHD_RAYS, VALUES},
-    [ETHD__INJECT_TIME] = {"time", 0, BIT(FREEZE) | BIT(OFFSET)},
-    [ETHD__INJECT_READING] = {"reading", 0, BIT(FREEZE) | BIT(DROP) | BIT(DELAY)},
-    [ETHD__INJECT_READ] = {"read", 0, BIT(FAIL) | BIT(STALE)},
-    [ETHD__INJECT_WRITE] = {"write", 0, BIT(FAIL) | BIT(DROP) | BIT(DELAY) | BIT(SCALE)},
-    [ETHD__INJECT_SERVICE] = {"service", 0, BIT(FAIL) | BIT(DROP)},
-    [ETHD__INJECT_START] = {"start", 0, BIT(FAIL)},
-    [ETHD__INJECT_FAULT] = {"fault", ETHD_FAULT_COUNT - 1, BIT(SET) | BIT(GRAVE)},
+    [ETHD__INJECT_Q] = {"q", 2, NOT, VALUES},
+    [ETHD__INJECT_DQ] = {"dq", 2, NOT, VALUES},
+    [ETHD__INJECT_CENTRE] = {"centre", 2, 3, VALUES},
+    [ETHD__INJECT_FINGER] = {"finger", 2, 3, VALUES},
+    [ETHD__INJECT_RING] = {"ring", 2, NOT, VALUES},
+    [ETHD__INJECT_RAY] = {"ray", ETHD_RAYS, NOT, VALUES},
+    [ETHD__INJECT_X] = {"x", NOT, 3, VALUES},
+    [ETHD__INJECT_V] = {"v", NOT, 3, VALUES},
+    [ETHD__INJECT_TIME] = {"time", 0, 0, BIT(FREEZE) | BIT(OFFSET)},
+    [ETHD__INJECT_READING] = {"reading", 0, 0, BIT(FREEZE) | BIT(DROP) | BIT(DELAY)},
+    [ETHD__INJECT_READ] = {"read", 0, 0, BIT(FAIL) | BIT(STALE)},
+    [ETHD__INJECT_WRITE] = {"write", 0, 0, BIT(FAIL) | BIT(DROP) | BIT(DELAY) | BIT(SCALE)},
+    [ETHD__INJECT_SERVICE] = {"service", 0, 0, BIT(FAIL) | BIT(DROP)},
+    [ETHD__INJECT_START] = {"start", 0, 0, BIT(FAIL)},
+    [ETHD__INJECT_FAULT] = {"fault", ETHD_FAULT_COUNT - 1, ETHD_FAULT_COUNT - 1, BIT(SET) | BIT(GRAVE)},
 };
 
 static const struct {
@@ -53,7 +56,7 @@ typedef struct script_reader {
   const char *name;
   char *message;
   int line;
-  double period;
+  ethd__script_of of;
 } script_reader;
 
 typedef struct script_word {
@@ -91,7 +94,7 @@ static script_word behind(script_word w, const char *prefix) {
 
 static ethd_status read_time(const script_reader *r, script_word w, ethd__injection *out) {
   int ticks = w.length > 1 && w.at[w.length - 1] == 't';
-  double t, unit = ticks ? r->period : 1;
+  double t, unit = ticks ? r->of.period : 1;
   if (!ethd__number(w.at, w.length - (size_t)ticks, &t) || !(t >= 0 && t * unit <= 1e6))
     return refuse(r, ETHD_E_SYNTAX, w, "a line begins with a time, 0 to 1e6 s, or in periods, as in 500t");
   out->from_ns = (int64_t)rint(1e9 * t * unit);
@@ -99,9 +102,11 @@ static ethd_status read_time(const script_reader *r, script_word w, ethd__inject
 }
 
 /* "ray5": the fifth; "ray": all. */
-static bool names(script_word w, int channel, ethd__injection *out) {
+static bool names(script_word w, int channel, bool in_space, ethd__injection *out) {
   const char *name = channels[channel].name;
-  uint32_t number = 0, numbers = channels[channel].numbers;
+  const int32_t has = in_space ? channels[channel].space : channels[channel].plane;
+  uint32_t number = 0, numbers = has < 0 ? 0 : (uint32_t)has;
+  if (has < 0) return false;
   out->first = 0;
   out->count = numbers ? numbers : 1;
   if (is_word(w, name)) return channel != ETHD__INJECT_FAULT;
@@ -120,13 +125,18 @@ static bool names(script_word w, int channel, ethd__injection *out) {
 
 static ethd_status read_channel(const script_reader *r, script_word w, ethd__injection *out) {
   for (int i = 0; i < ETHD__INJECT_CHANNELS; i++)
-    if (names(w, i, out)) {
+    if (names(w, i, r->of.in_space, out)) {
       out->channel = (ethd__inject_channel)i;
       return ETHD_OK;
     }
+  if (r->of.in_space)
+    return refuse(
+        r, ETHD_E_UNKNOWN, w,
+        "channels in space are x1 x2 x3 v1 v2 v3 centre1 centre2 centre3 finger1 finger2 finger3 time reading "
+        "read write service start fault1..fault39");
   return refuse(r, ETHD_E_UNKNOWN, w,
                 "channels are q1 q2 dq1 dq2 centre1 centre2 finger1 finger2 ring1 ring2 ray1..ray16 time reading "
-                "read write service start fault1..fault38");
+                "read write service start fault1..fault39");
 }
 
 static ethd_status read_kind(const script_reader *r, script_word w, ethd__injection *out) {
@@ -174,7 +184,7 @@ static ethd_status read_rest(const script_reader *r, const char *at, const char 
   }
   if (!status && kinds[out->kind].by && isnan(out->by))
     status = refuse(r, ETHD_E_ARGUMENT, (script_word){at, 0}, "this kind needs by=NUMBER");
-  if (!out->until_ns) out->until_ns = out->from_ns + (int64_t)rint(1e9 * r->period);
+  if (!out->until_ns) out->until_ns = out->from_ns + (int64_t)rint(1e9 * r->of.period);
   return status;
 }
 
@@ -214,9 +224,9 @@ static ethd_status read_lines(script_reader *r, const char *text, size_t length,
   return ETHD_OK;
 }
 
-ethd_status ethd__script_parse(const char *text, size_t length, const char *name, double period, ethd__script *out,
+ethd_status ethd__script_parse(const char *text, size_t length, const char *name, ethd__script_of of, ethd__script *out,
                                char message[ETHD_MESSAGE_MAX]) {
-  script_reader r = {.name = name, .message = message, .line = 1, .period = period};
+  script_reader r = {.name = name, .message = message, .line = 1, .of = of};
   *out = (ethd__script){.at = calloc(ETHD_INJECT_LINES_MAX, sizeof *out->at)};
   if (!out->at) return ethd__no_memory(message, name);
   ethd_status status = read_lines(&r, text, length, out);
@@ -224,13 +234,13 @@ ethd_status ethd__script_parse(const char *text, size_t length, const char *name
   return status;
 }
 
-ethd_status ethd__script_load(const char *path, double period, ethd__script *out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__script_load(const char *path, ethd__script_of of, ethd__script *out, char message[ETHD_MESSAGE_MAX]) {
   char *text;
   size_t length;
   *out = (ethd__script){.count = 0};
   ethd_status status = ethd_text_read(path, ETHD_INJECT_BYTES_MAX, &text, &length, message);
   if (status) return status;
-  status = ethd__script_parse(text, length, path, period, out, message);
+  status = ethd__script_parse(text, length, path, of, out, message);
   free(text);
   return status;
 }

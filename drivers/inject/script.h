@@ -10,7 +10,8 @@
        0.900  fault9   set                          # the drive reports a fault
 
    TIME counts from the first sample after the device's start. Without a number a channel means all of its
-   numbers: q is q1 and q2. What the channels and kinds are stands in script.c, in two tables. */
+   numbers: q is q1 and q2. What the channels and kinds are stands in script.c, in two tables. A device in space has x1 to
+   x3, v1 to v3, centre1 to centre3 (its reading) and finger1 to finger3. */
 #ifndef ETHD__INJECT_SCRIPT_H
 #define ETHD__INJECT_SCRIPT_H
 
@@ -29,6 +30,8 @@ typedef enum ethd__inject_channel {
   ETHD__INJECT_FINGER,
   ETHD__INJECT_RING,
   ETHD__INJECT_RAY,
+  ETHD__INJECT_X, /* of an effector in space */
+  ETHD__INJECT_V,
   ETHD__INJECT_TIME,    /* of the joint sample */
   ETHD__INJECT_READING, /* of the finger, whole */
   ETHD__INJECT_READ,    /* the calls of a driver */
@@ -72,10 +75,16 @@ typedef struct ethd__script {
   ethd__injection *at;
 } ethd__script;
 
-/* Parses a script, which messages call `name`; period, s. text[length] is 0. On failure *out is empty. [main] */
-ETHD_MUST_CHECK ethd_status ethd__script_parse(const char *text, size_t length, const char *name, double period,
+/* Whose faults a script tells. */
+typedef struct ethd__script_of {
+  double period; /* s */
+  bool in_space; /* the device has the front of space.h */
+} ethd__script_of;
+
+/* Parses a script, which messages call `name`. text[length] is 0. On failure *out is empty. [main] */
+ETHD_MUST_CHECK ethd_status ethd__script_parse(const char *text, size_t length, const char *name, ethd__script_of of,
                                                ethd__script *out, char message[ETHD_MESSAGE_MAX]);
-ETHD_MUST_CHECK ethd_status ethd__script_load(const char *path, double period, ethd__script *out,
+ETHD_MUST_CHECK ethd_status ethd__script_load(const char *path, ethd__script_of of, ethd__script *out,
                                               char message[ETHD_MESSAGE_MAX]);
 void ethd__script_free(ethd__script *script);
 

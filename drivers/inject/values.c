@@ -2,15 +2,26 @@
 
 #include <math.h>
 
-/* Returns where the sample holds a channel's numbers; NULL when it doesn't hold them. */
-static double *numbers(ethd__inject_channel channel, bool joints, ethd_sense *s) {
+double *ethd__inject_plane_numbers(ethd__inject_channel channel, bool is_new, ethd__inject_sense *sense) {
+  ethd_sense *s = &sense->plane;
   switch (channel) {
-  case ETHD__INJECT_Q: return joints ? s->q : NULL;
-  case ETHD__INJECT_DQ: return joints && (s->have & ETHD_HAVE_DQ) ? s->dq : NULL;
+  case ETHD__INJECT_Q: return is_new ? s->q : NULL;
+  case ETHD__INJECT_DQ: return is_new && (s->have & ETHD_HAVE_DQ) ? s->dq : NULL;
   case ETHD__INJECT_CENTRE: return s->have & ETHD_HAVE_CENTRE ? s->centre : NULL;
   case ETHD__INJECT_FINGER: return s->have & ETHD_HAVE_FINGER ? s->finger : NULL;
   case ETHD__INJECT_RING: return s->have & ETHD_HAVE_RING ? s->ring : NULL;
   case ETHD__INJECT_RAY: return s->have & ETHD_HAVE_RAYS ? s->rays : NULL;
+  default: return NULL;
+  }
+}
+
+double *ethd__inject_space_numbers(ethd__inject_channel channel, bool is_new, ethd__inject_sense *sense) {
+  ethd_space_sense *s = &sense->space;
+  switch (channel) {
+  case ETHD__INJECT_X: return is_new ? s->x : NULL;
+  case ETHD__INJECT_V: return is_new ? s->v : NULL;
+  case ETHD__INJECT_CENTRE: return s->have & ETHD_SPACE_HAVE_READING ? s->reading : NULL;
+  case ETHD__INJECT_FINGER: return s->have & ETHD_SPACE_HAVE_FINGER ? s->finger : NULL;
   default: return NULL;
   }
 }
@@ -36,20 +47,19 @@ static double spoilt(const ethd__injection *in, uint32_t i, int64_t t, double va
   }
 }
 
-static bool shift_time(ethd__injection *in, ethd_sense *s) {
-  if (!in->begun) in->held[0] = (double)s->time_ns;
+static bool shift_time(ethd__injection *in, int64_t *time_ns) {
+  if (!in->begun) in->held[0] = (double)*time_ns;
   in->begun = true;
-  s->time_ns = in->kind == ETHD__INJECT_FREEZE ? (int64_t)in->held[0] : s->time_ns + (int64_t)rint(1e9 * in->by);
+  *time_ns = in->kind == ETHD__INJECT_FREEZE ? (int64_t)in->held[0] : *time_ns + (int64_t)rint(1e9 * in->by);
   return true;
 }
 
-bool ethd__inject_values(ethd__injection *in, int64_t t, bool joints, ethd_sense *s) {
+bool ethd__inject_values(ethd__injection *in, int64_t t, int64_t *time_ns, double *at) {
   if (t < in->from_ns || t >= in->until_ns) {
     in->begun = false;
     return false;
   }
-  if (in->channel == ETHD__INJECT_TIME) return joints ? shift_time(in, s) : false;
-  double *at = numbers(in->channel, joints, s);
+  if (in->channel == ETHD__INJECT_TIME) return time_ns ? shift_time(in, time_ns) : false;
   if (!at) return false;
   for (uint32_t i = 0; i < in->count; i++) {
     double *value = at + in->first + i;

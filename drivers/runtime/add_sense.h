@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "ethd/sense.h"
+#include "ethd/space.h"
 
 /* The bits of a reading of the finger, which belong together. */
 #define ETHD__READING \
@@ -39,6 +40,36 @@ static inline void ethd__sense_add(const ethd_sense *from, bool has_joints, ethd
   memcpy(to->q, from->q, sizeof to->q);
   if (from->have & ETHD_HAVE_DQ) memcpy(to->dq, from->dq, sizeof to->dq);
   if (from->have & ETHD_HAVE_AGE) memcpy(to->age, from->age, sizeof to->age);
+}
+
+/* The same in space. */
+#define ETHD__SPACE_READING                                                                 \
+  ((int64_t)(ETHD_SPACE_HAVE_FINGER | ETHD_SPACE_HAVE_READING | ETHD_SPACE_HAVE_READING_V | \
+             ETHD_SPACE_HAVE_EXTRAPOLATED))
+
+static inline void ethd__space_put_reading(const ethd_space_sense *from, ethd_space_sense *to) ETHD_RT {
+  to->have = (to->have & ~ETHD__SPACE_READING) | (from->have & ETHD__SPACE_READING);
+  to->sample_ns = from->sample_ns;
+  to->reading_noise = from->reading_noise;
+  to->reading_v_noise = from->reading_v_noise;
+  memcpy(to->finger, from->finger, sizeof to->finger);
+  memcpy(to->finger_v, from->finger_v, sizeof to->finger_v);
+  memcpy(to->reading, from->reading, sizeof to->reading);
+  memcpy(to->reading_v, from->reading_v, sizeof to->reading_v);
+}
+
+static inline void ethd__space_add(const ethd_space_sense *from, bool has_effector, ethd_space_sense *to) ETHD_RT {
+  to->faults |= from->faults;
+  to->grave |= from->grave;
+  if (from->have & ETHD__SPACE_READING) ethd__space_put_reading(from, to);
+  if (from->have & ETHD_SPACE_HAVE_NORMAL) memcpy(to->normal, from->normal, sizeof to->normal);
+  if (from->have & ETHD_SPACE_HAVE_ABILITY) memcpy(to->ability, from->ability, sizeof to->ability);
+  if (from->have & ETHD_SPACE_HAVE_COMMANDED) memcpy(to->commanded, from->commanded, sizeof to->commanded);
+  to->have |= from->have;
+  if (!has_effector) return;
+  to->time_ns = from->time_ns;
+  memcpy(to->x, from->x, sizeof to->x);
+  memcpy(to->v, from->v, sizeof to->v);
 }
 
 #endif

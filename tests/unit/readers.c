@@ -144,7 +144,7 @@ static int read_script(const char *text, size_t length) {
   char message[ETHD_MESSAGE_MAX] = "";
   ethd__script script;
   bool is_good = true;
-  ethd_status status = ethd__script_parse(text, length, "x", 0.001, &script, message);
+  ethd_status status = ethd__script_parse(text, length, "x", (ethd__script_of){0.001, false}, &script, message);
   for (uint32_t k = 0; k < script.count; k++) {
     const ethd__injection *in = &script.at[k];
     is_good &= in->until_ns > in->from_ns && in->from_ns >= 0 && in->first + in->count <= ETHD_FAULT_COUNT;

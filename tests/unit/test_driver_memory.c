@@ -66,7 +66,7 @@ static ethd_status write_table(void) {
 
 static ethd_status read_script(void) {
   ethd__script script;
-  ethd_status status = ethd__script_load(in_folder("s.inject"), 1e-3, &script, message);
+  ethd_status status = ethd__script_load(in_folder("s.inject"), (ethd__script_of){1e-3, false}, &script, message);
   if (!status) ethd__script_free(&script);
   return status;
 }

@@ -284,10 +284,11 @@ TEST(test_rows_and_start) {
   ethd__script script;
   char message[ETHD_MESSAGE_MAX];
   const char *text = "0 start fail";
-  ck_assert_int_eq(ethd__script_parse(text, strlen(text), "s", 0.001, &script, message), ETHD_OK);
+  ck_assert_int_eq(ethd__script_parse(text, strlen(text), "s", (ethd__script_of){0.001, false}, &script, message),
+                   ETHD_OK);
   ethd_device device;
   device_of(&device, &driver, &p);
-  device.inject = ethd__inject_create(&script);
+  device.inject = ethd__inject_create(&script, false);
   ck_assert_int_eq(ethd_device_start(&device), ETHD_E_DEVICE);
   ethd__inject_free(device.inject);
 }
@@ -341,7 +342,9 @@ static const struct {
 TEST_LOOP(test_refused, 0, sizeof bad / sizeof *bad) {
   ethd__script script;
   char message[ETHD_MESSAGE_MAX] = "";
-  ck_assert_int_lt(ethd__script_parse(bad[_i].text, strlen(bad[_i].text), "s", 0.001, &script, message), 0);
+  ck_assert_int_lt(
+      ethd__script_parse(bad[_i].text, strlen(bad[_i].text), "s", (ethd__script_of){0.001, false}, &script, message),
+      0);
   ck_assert_msg(strstr(message, bad[_i].says) && !strncmp(message, "s:", 2), "%s", message);
   ck_assert_ptr_null(script.at);
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "add_sense.h"
 #include "settings/config_parts.h"
 
 void ethd__device_foreign(ethd_device *d, uint32_t i, const char *doing) {
@@ -28,35 +29,46 @@ static ethd_status read_all(const ethd_device *d, int64_t now_ns, ethd_sense *ou
 }
 
 ethd_status ethd_device_read(ethd_device *d, int64_t now_ns, ethd_sense *out) ETHD_RT {
-  ethd_sense own;
+  ethd__inject_sense own;
   if (!d->inject) return read_all(d, now_ns, out);
   ethd_status status = ethd__inject_before(d->inject, now_ns, &own);
-  if (!status) status = read_all(d, now_ns, &own);
-  if (status >= 0) ethd__inject_after(d->inject, status, &own, out);
+  if (!status) status = read_all(d, now_ns, &own.plane);
+  if (status >= 0) ethd__sense_add(&own.plane, ethd__inject_after(d->inject, status, &own), out);
   return status;
 }
 
 ethd_status ethd_device_write(ethd_device *d, int64_t now_ns, const ethd_command *command) ETHD_RT {
-  ethd_command own = *command;
+  ethd__inject_order own = {.plane = *command};
   ethd_status status = d->inject ? ethd__inject_command(d->inject, &own) : ETHD_OK;
   if (status) return status < 0 ? status : ETHD_OK; /* positive: it is dropped */
   for (uint32_t i = 0; i < d->count; i++)
-    if (d->at[i].driver->write) status = worse(status, d->at[i].driver->write(d->at[i].state, now_ns, &own));
+    if (d->at[i].driver->write) status = worse(status, d->at[i].driver->write(d->at[i].state, now_ns, &own.plane));
   return status;
 }
 
-ethd_status ethd_device_read_space(ethd_device *d, int64_t now_ns, ethd_space_sense *out) ETHD_RT {
+static ethd_status read_all_space(const ethd_device *d, int64_t now_ns, ethd_space_sense *out) {
   ethd_status status = ETHD_OK;
   for (uint32_t i = 0; i < d->count; i++)
     if (d->at[i].driver->read_space) status = worse(status, d->at[i].driver->read_space(d->at[i].state, now_ns, out));
   return status;
 }
 
+ethd_status ethd_device_read_space(ethd_device *d, int64_t now_ns, ethd_space_sense *out) ETHD_RT {
+  ethd__inject_sense own;
+  if (!d->inject) return read_all_space(d, now_ns, out);
+  ethd_status status = ethd__inject_before(d->inject, now_ns, &own);
+  if (!status) status = read_all_space(d, now_ns, &own.space);
+  if (status >= 0) ethd__space_add(&own.space, ethd__inject_after(d->inject, status, &own), out);
+  return status;
+}
+
 ethd_status ethd_device_write_space(ethd_device *d, int64_t now_ns, const ethd_space_command *command) ETHD_RT {
-  ethd_status status = ETHD_OK;
+  ethd__inject_order own = {.space = *command};
+  ethd_status status = d->inject ? ethd__inject_command(d->inject, &own) : ETHD_OK;
+  if (status) return status < 0 ? status : ETHD_OK; /* positive: it is dropped */
   for (uint32_t i = 0; i < d->count; i++)
     if (d->at[i].driver->write_space)
-      status = worse(status, d->at[i].driver->write_space(d->at[i].state, now_ns, command));
+      status = worse(status, d->at[i].driver->write_space(d->at[i].state, now_ns, &own.space));
   return status;
 }
 

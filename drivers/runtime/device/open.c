@@ -287,10 +287,12 @@ static ethd_status load_script(const naming *n, const char *file) {
   ethd__script script = {.count = 0};
   char *path = ethd__path_join(n->def->folder, file);
   if (!path) return ethd__no_memory(n->message, NULL);
-  ethd_status status = ethd__script_load(path, n->def->setup->period, &script, n->message);
+  const bool in_space = n->device->in_space;
+  const double period = in_space ? n->def->space->period : n->def->setup->period;
+  ethd_status status = ethd__script_load(path, (ethd__script_of){period, in_space}, &script, n->message);
   free(path);
   if (status) return status;
-  n->device->inject = ethd__inject_create(&script);
+  n->device->inject = ethd__inject_create(&script, in_space);
   if (n->device->inject) return ETHD_OK;
   ethd__script_free(&script);
   return ethd__no_memory(n->message, NULL);
@@ -303,11 +305,6 @@ static ethd_status open_device(const naming *n, const char *ids, ethd_device **o
   n->device->process = getpid();
   n->device->in_space = n->def->space != NULL;
   const ethd_setting *script = find_common(n->def, INJECT);
-  if (script && n->device->in_space) {
-    ethd_device_close(n->device);
-    return ethd__say(n->message, ETHD_E_ARGUMENT, "%s:%d: device.inject: a device in space has no faults injected",
-                     file_of(n->def), script->line);
-  }
   ethd_status status = script ? load_script(n, script->value) : ETHD_OK;
   if (!status) status = open_all(n, ids);
   if (status)
