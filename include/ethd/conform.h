@@ -42,6 +42,13 @@ typedef struct ethd_conform_def {
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_conform(const ethd_conform_def *def,
                                                   ethd_conform_answer answers[ETHD_QUESTIONS]);
 
+#define ETHD_SPACE_QUESTIONS 7
+
+/* Asks a device in space (def->device->space), which is pushed by `torque`, m/s or N as its setup says, and by no more
+   than the setup's limit. Returns as ethd_conform does (ETHD_E_...). [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_conform_space(const ethd_conform_def *def,
+                                                        ethd_conform_answer answers[ETHD_SPACE_QUESTIONS]);
+
 ETHD_END_DECLS
 
 #endif

@@ -37,12 +37,12 @@
 ETHD_BEGIN_DECLS
 
 /* The interface's version, 4, in 4 bits, and in eights of bytes the size of each struct that a driver fills or gets, so
-   that none grows unnoticed and a refusal names it: ethd_sense in 7 bits, ethd_space_sense in 6, ethd_limits in 5,
-   ethd_space_command in 4, ethd_command and ethd_dynamics in 3 each. Never 0, which is a table whose abi wasn't set.
+   that none grows unnoticed and a refusal names it: ethd_sense in 7 bits, ethd_space_sense and ethd_limits in 6,
+   ethd_space_command, ethd_command and ethd_dynamics in 3 each. Never 0, which is a table whose abi wasn't set.
    (ethd_ability is part of ethd_space_sense.) */
-#define ETHD_DRIVER_ABI                                                                                             \
-  ((uint32_t)(4u << 28 | sizeof(ethd_sense) / 8 << 21 | sizeof(ethd_space_sense) / 8 << 15 |                        \
-              sizeof(ethd_limits) / 8 << 10 | sizeof(ethd_space_command) / 8 << 6 | sizeof(ethd_command) / 8 << 3 | \
+#define ETHD_DRIVER_ABI                                                                                            \
+  ((uint32_t)(4u << 28 | sizeof(ethd_sense) / 8 << 21 | sizeof(ethd_space_sense) / 8 << 15 |                       \
+              sizeof(ethd_limits) / 8 << 9 | sizeof(ethd_space_command) / 8 << 6 | sizeof(ethd_command) / 8 << 3 | \
               sizeof(ethd_dynamics) / 8))
 #define ETHD_DRIVERS_MAX 4         /* behind one device */
 #define ETHD_DRIVERS_TEXT_MAX 1024 /* bytes of their ids and files in a row, the closing 0 included */

@@ -163,10 +163,10 @@ TEST(test_limits) {
 TEST(test_where_plants_are) {
   const ethd_setting letter = {"plant", "b", 1}, path = {"plant", "../../" FOLDER "/b.plant", 1};
   setup = ethd_setup_default();
-  const ethd_device_def defs[] = {{&setup, &letter, 1, FOLDER, NULL, 1},
-                                  {&setup, &letter, 1, "tests", NULL, 1},
-                                  {&setup, &path, 1, FOLDER, NULL, 1},
-                                  {&setup, &path, 1, "tests", NULL, 1}};
+  const ethd_device_def defs[] = {{&setup, &letter, 1, FOLDER, NULL, 1, NULL},
+                                  {&setup, &letter, 1, "tests", NULL, 1, NULL},
+                                  {&setup, &path, 1, FOLDER, NULL, 1, NULL},
+                                  {&setup, &path, 1, "tests", NULL, 1, NULL}};
   ck_assert_int_eq(setenv("ETHD_DATA_DIR", FOLDER, 1), 0);
   for (size_t i = 0; i < 4; i++) {
     void *device;

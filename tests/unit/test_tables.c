@@ -113,8 +113,8 @@ TEST(test_drivers) {
   "it was built with an " name " of " there " bytes, here it has " here ": build it with these headers"
   REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_sense", "504", "512"), d.abi -= 1u << 21);
   REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_space_sense", "320", "312"), d.abi += 1u << 15);
-  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_limits", "200", "192"), d.abi += 1u << 10);
-  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_space_command", "64", "56"), d.abi += 1u << 6);
+  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_limits", "200", "192"), d.abi += 1u << 9);
+  REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_space_command", "48", "56"), d.abi -= 1u << 6);
   REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_command", "32", "24"), d.abi += 1u << 3);
   REFUSED(ETHD_E_ABI, BUILT_WITH("ethd_dynamics", "48", "40"), d.abi += 1u);
   REFUSED(ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _", d.id = NULL);

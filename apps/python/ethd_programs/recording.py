@@ -109,6 +109,7 @@ SPACE_FIELDS = (
         ("able_speed_mps", "able_acceleration_mps2", "able_delay_s", "able_mass_kg", "able_force_N", "able_friction_N"),
         (32,),
     ),
+    Field("commanded", "N, m/s", _axes("commanded_{}", ""), (128,)),
     Field("tick", "1", ("tick",)),
     Field("fault", "1", ("fault",)),
     Field("guard", "1", ("guard",)),

@@ -29,7 +29,7 @@ bool ethd__conform_stopped(const ethd_conform_def *def) { return def->stop && *d
 
 /* ---- time ---- */
 
-static void await_tick(ethd__conform_rig *r) {
+void ethd__conform_rig_await(ethd__conform_rig *r) {
   struct timespec t;
   r->now += r->period;
   if (r->def->device->is_virtual) return;
@@ -68,7 +68,7 @@ static void stop_units(ethd__conform_rig *r) {
 bool ethd__conform_rig_open(const ethd_conform_def *def, ethd__conform_rig *r) {
   memset(r, 0, sizeof *r);
   r->def = def;
-  r->period = llrint(1e9 * def->device->setup->period);
+  r->period = llrint(1e9 * (def->device->space ? def->device->space->period : def->device->setup->period));
   r->now = def->device->is_virtual ? 0 : ethd__clock_now();
   r->resolution = (double)INFINITY;
   r->finite = 1;
@@ -164,7 +164,7 @@ static void tick(ethd__conform_rig *r, const double *torque) {
     return;
   }
   if (torque) memcpy(command.torque, torque, sizeof command.torque);
-  await_tick(r);
+  ethd__conform_rig_await(r);
   for (uint32_t u = 0, n = ethd_device_units(r->device); u < n && r->def->device->is_virtual; u++)
     (void)!ethd_device_service(r->device, u, r->now);
   ethd_status status = ethd_device_read(r->device, r->now, &s);

@@ -57,6 +57,9 @@ ethd_status ethd__conform_rig_start(ethd__conform_rig *r);
 /* Leaves the device without any message for so long, even from its I/O threads; not for a virtual clock. */
 void ethd__conform_rig_hush(ethd__conform_rig *r, double seconds);
 
+/* Waits for the next tick's instant. */
+void ethd__conform_rig_await(ethd__conform_rig *r);
+
 /* Runs ticks for `seconds` with `torque`, Nm, on one joint and 0 on the other. */
 void ethd__conform_rig_run(ethd__conform_rig *r, double seconds, int joint, double torque);
 

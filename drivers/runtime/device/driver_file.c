@@ -42,7 +42,7 @@ static const struct {
   const char *name;
   uint32_t at, mask, size;
 } sizes[] = {{"ethd_sense", 21, 127, sizeof(ethd_sense)},  {"ethd_space_sense", 15, 63, sizeof(ethd_space_sense)},
-             {"ethd_limits", 10, 31, sizeof(ethd_limits)}, {"ethd_space_command", 6, 15, sizeof(ethd_space_command)},
+             {"ethd_limits", 9, 63, sizeof(ethd_limits)},  {"ethd_space_command", 6, 7, sizeof(ethd_space_command)},
              {"ethd_command", 3, 7, sizeof(ethd_command)}, {"ethd_dynamics", 0, 7, sizeof(ethd_dynamics)}};
 
 #define FITS(type, bits)                                                                                     \
@@ -50,8 +50,8 @@ static const struct {
                                                                        "for " #type)
 FITS(ethd_sense, 7);
 FITS(ethd_space_sense, 6);
-FITS(ethd_limits, 5);
-FITS(ethd_space_command, 4);
+FITS(ethd_limits, 6);
+FITS(ethd_space_command, 3);
 FITS(ethd_command, 3);
 FITS(ethd_dynamics, 3);
 

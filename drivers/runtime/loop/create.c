@@ -46,8 +46,8 @@ static ethd_status within(ethd_error *error, const char *name, double found, dou
   return ethd__loop_refuse(error, ETHD_E_RANGE, name, found, min, max);
 }
 
-static const ethd__front *front_of(const ethd_loop_def *d) {
-  return d->space ? &ethd__front_space : &ethd__front_plane;
+static const ethd__loop_front *front_of(const ethd_loop_def *d) {
+  return d->space ? &ethd__loop_space : &ethd__loop_plane;
 }
 
 /* The controller takes its speeds from its own period, whatever the clock says: at another one they would be wrong. */

@@ -33,16 +33,16 @@ typedef struct ethd__effector {
 } ethd__effector;
 
 /* What a loop holds for its front. */
-typedef union ethd__front_sense {
+typedef union ethd__loop_sense {
   ethd__sense_head head;
   ethd_sense plane;
   ethd_space_sense space;
-} ethd__front_sense;
+} ethd__loop_sense;
 
-typedef union ethd__front_row {
+typedef union ethd__loop_row {
   ethd_loop_row plane;
   ethd_space_row space;
-} ethd__front_row;
+} ethd__loop_row;
 
 /* The surfaces near an effector, and what was written to a device in space. */
 typedef struct ethd__near {
@@ -52,7 +52,7 @@ typedef struct ethd__near {
   double given[3];
 } ethd__near;
 
-typedef struct ethd__front {
+typedef struct ethd__loop_front {
   size_t row, tail; /* bytes of a row; where its tail is */
   /* [rt] */
   /* Adds what the device has to the sense, which is empty unless a sample is held, and returns the device's status. */
@@ -78,8 +78,8 @@ typedef struct ethd__front {
   void (*restart)(ethd_loop *loop);
   void (*start)(ethd_loop *loop);           /* the device has been started */
   bool (*has_fault)(const ethd_loop *loop); /* as the last row says */
-} ethd__front;
+} ethd__loop_front;
 
-extern const ethd__front ethd__front_plane, ethd__front_space;
+extern const ethd__loop_front ethd__loop_plane, ethd__loop_space;
 
 #endif

@@ -58,11 +58,11 @@ static ethd_status take(ethd_loop *l, void *out) {
 }
 
 ethd_status ethd_loop_take(ethd_loop *l, ethd_loop_row *out) {
-  return l->front == &ethd__front_plane ? take(l, out) : ETHD_E_ARGUMENT;
+  return l->front == &ethd__loop_plane ? take(l, out) : ETHD_E_ARGUMENT;
 }
 
 ethd_status ethd_loop_take_space(ethd_loop *l, ethd_space_row *out) {
-  return l->front == &ethd__front_space ? take(l, out) : ETHD_E_ARGUMENT;
+  return l->front == &ethd__loop_space ? take(l, out) : ETHD_E_ARGUMENT;
 }
 
 static uint64_t seen(const uint64_t *count) { return __atomic_load_n(count, __ATOMIC_RELAXED); }

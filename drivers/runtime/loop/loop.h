@@ -44,7 +44,7 @@ typedef struct ethd__unit {
 
 struct ethd_loop {
   ethd_loop_def def;
-  const ethd__front *front;
+  const ethd__loop_front *front;
   int64_t period, early;  /* ns */
   int64_t gap, heartbeat; /* ns; INT64_MAX: none */
 
@@ -65,7 +65,7 @@ struct ethd_loop {
   int64_t beat_at; /* ns: the tick that saw the application's last beat; 0: none has */
   unsigned beats_seen;
   ethd__row_tail tail; /* of the next row */
-  ethd__front_sense sense;
+  ethd__loop_sense sense;
   union {
     ethd__joints joints;
     ethd__effector effector;
@@ -76,7 +76,7 @@ struct ethd_loop {
     ethd_space_command space;
   } command;
   ethd__near near;
-  ethd__front_row row;
+  ethd__loop_row row;
   ethd_loop_stats stats;
 
   _Alignas(64) atomic_int mode, armed, clear, stop, ended, failed;
