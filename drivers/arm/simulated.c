@@ -41,12 +41,14 @@ static bool has_normal(const ethd_space_command *c) {
 
 void ethd__arm_sim_write(ethd__arm_sim *s, const ethd_space_command *command) {
   s->periods++;
+  s->ruling = (ethd_joints_ruling){.share = 1, .joint = -1};
   if (command->safe && s->table.safe == ETHD__ARM_BRAKES && !s->braked) brake(s);
   if (s->braked) return;
   if (command->safe)
     ethd__arm_motion_stop(&s->motion);
   else
-    (void)ethd__arm_motion_step(&s->motion, ethd_vec3_of(command->value), has_normal(command) ? command->normal : NULL);
+    s->ruling =
+        ethd__arm_motion_step(&s->motion, ethd_vec3_of(command->value), has_normal(command) ? command->normal : NULL);
   ethd__arm_servo_step(&s->servo, s->motion.dq);
 }
 

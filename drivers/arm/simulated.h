@@ -13,8 +13,9 @@ typedef struct ethd__arm_sim {
   ethd__arm_motion motion;
   ethd__arm_servo servo;
   ethd__arm_finger finger;
-  int64_t periods; /* since the start */
-  int32_t braked;  /* 1: the brakes are closed, and stay so until the start */
+  ethd_joints_ruling ruling; /* of the last period's motion */
+  int64_t periods;           /* since the start */
+  int32_t braked;            /* 1: the brakes are closed, and stay so until the start */
 } ethd__arm_sim;
 
 /* Puts the arm to rest at its posture, at time 0, with what `table` and `finger` hold. */

@@ -140,6 +140,7 @@ struct ethd_driver {
 };
 
 ETHD_API extern const ethd_driver ethd_driver_sim, ethd_driver_hello;
+ETHD_API extern const ethd_driver ethd_driver_arm; /* in space, simulated */
 ETHD_API extern const ethd_driver ethd_driver_servo;
 ETHD_API extern const ethd_driver ethd_driver_ring;    /* a proximity ring, beside a driver that moves */
 ETHD_API extern const ethd_driver ethd_driver_zones;   /* on-off light barriers, beside a driver that moves */
