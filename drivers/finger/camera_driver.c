@@ -160,6 +160,11 @@ static ethd_status camera_read(void *device, int64_t now_ns, ethd_sense *out) ET
   return ETHD_OK;
 }
 
+static ethd_status camera_read_space(void *device, int64_t now_ns, ethd_space_sense *out) ETHD_RT {
+  ethd__inbox_read_space(&((camera *)device)->inbox, now_ns, out);
+  return ETHD_OK;
+}
+
 /* ---- [main] ---- */
 
 static ethd_status refuse(const ethd_device_def *def, const ethd_setting *s, const char *key, const char *allowed,
@@ -209,7 +214,7 @@ static ethd_status camera_prepare(const ethd_device_def *def, void **device, cha
   c->fd = -1;
   c->rate = p[RATE];
   c->confidence = p[CONFIDENCE];
-  c->axes = 2;
+  c->axes = def->space ? 3 : 2;
   c->is_virtual = def->is_virtual;
   c->clock.delay = (int64_t)(1e9 * p[DELAY]);
   if (ethd__inbox_open(&c->inbox, p[RATE])) return ethd__no_memory(message, NULL);
@@ -270,4 +275,5 @@ const ethd_driver ethd_driver_camera = {
     .figures = figures,
     .joints = ethd__no_joints,
     .prepare = camera_prepare,
+    .read_space = camera_read_space,
 };

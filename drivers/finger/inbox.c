@@ -40,19 +40,36 @@ static int64_t rows_of(const ethd__inbox *in, int64_t now_ns) {
   return rows;
 }
 
-void ethd__inbox_read(ethd__inbox *in, int64_t now_ns, ethd_sense *out) {
+/* Takes the newest reading and adds its rows; returns whether it is new at this tick. */
+static bool take(ethd__inbox *in, int64_t now_ns, int64_t *faults) {
   const ethd__sighting *s = &in->taken;
   (void)!ethd_cell_take(in->cell, &in->taken);
-  out->faults |= rows_of(in, now_ns);
-  if (s->readings != in->read && s->sample_ns <= now_ns) {
-    out->have |= s->have;
-    out->sample_ns = s->sample_ns;
-    ethd_vec_put((ethd_vec){s->centre.x, s->centre.y}, out->centre);
-    out->finger_noise = s->noise;
-    in->read = s->readings;
-  }
+  *faults |= rows_of(in, now_ns);
   in->lost = s->lost;
   in->jumps = s->jumps;
+  if (s->readings == in->read || s->sample_ns > now_ns) return false;
+  in->read = s->readings;
+  return true;
+}
+
+void ethd__inbox_read(ethd__inbox *in, int64_t now_ns, ethd_sense *out) {
+  const ethd__sighting *s = &in->taken;
+  if (!take(in, now_ns, &out->faults)) return;
+  out->have |= s->have;
+  out->sample_ns = s->sample_ns;
+  ethd_vec_put((ethd_vec){s->centre.x, s->centre.y}, out->centre);
+  out->finger_noise = s->noise;
+}
+
+void ethd__inbox_read_space(ethd__inbox *in, int64_t now_ns, ethd_space_sense *out) {
+  const ethd__sighting *s = &in->taken;
+  if (!take(in, now_ns, &out->faults)) return;
+  out->have |= ETHD_SPACE_HAVE_READING | (s->v_noise > 0 ? ETHD_SPACE_HAVE_READING_V : 0);
+  out->sample_ns = s->sample_ns;
+  ethd_vec3_put(s->centre, out->reading);
+  ethd_vec3_put(s->v, out->reading_v);
+  out->reading_noise = s->noise;
+  out->reading_v_noise = s->v_noise;
 }
 
 uint32_t ethd__inbox_figures(ethd__inbox *in, ethd_figure *out, uint32_t max) {

@@ -51,6 +51,7 @@ void ethd__inbox_judge(ethd__inbox *inbox, bool is_good);
 /* Gives a reading that is new at the tick's instant. One that was taken after it, while a late tick was on its way,
    waits for the next tick: a controller drops readings of the future. */
 void ethd__inbox_read(ethd__inbox *inbox, int64_t now_ns, ethd_sense *out) ETHD_RT;
+void ethd__inbox_read_space(ethd__inbox *inbox, int64_t now_ns, ethd_space_sense *out) ETHD_RT;
 
 /* Fills a driver's figures, at most 4, and returns how many. [main] */
 uint32_t ethd__inbox_figures(ethd__inbox *inbox, ethd_figure *out, uint32_t max);

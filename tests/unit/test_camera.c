@@ -211,6 +211,45 @@ TEST(test_driver) {
   close(fd);
 }
 
+/* In space a position needs three numbers; its velocity comes with it. */
+TEST(test_in_space) {
+  char listen[64], message[ETHD_MESSAGE_MAX] = "";
+  const int fd = sender();
+  const ethd_space_setup setup = ethd_space_setup_default();
+  void *device;
+  snprintf(listen, sizeof listen, "127.0.0.1:%u", ntohs(address.sin_port));
+  const ethd_setting settings[] = {{"listen", listen, 2}, {"delay", "0.001", 3}, {"confidence", "0.6", 4}};
+  const ethd_device_def def = {NULL, settings, 3, ".", "x.ini", 1, &setup};
+  const pid_t child = fork();
+  if (child == 0)
+    for (uint32_t i = 0;; i++) send_exposure(fd, i, (ethd_vec){1, 1}, true), usleep(2000);
+  const ethd_status status = ethd_driver_camera.open(&def, &device, message);
+  kill(child, SIGKILL);
+  waitpid(child, NULL, 0);
+  ck_assert_msg(status == ETHD_OK, "%s", message);
+  for (int i = 0; i < 1000; i++) (void)!ethd_driver_camera.service(device, 0, INT64_C(900000000));
+  static const char *const texts[] = {
+      "{\"seq\": 1, \"t\": 7.5, \"p\": [0.1, -0.2, 0.3], \"noise\": 0.013, \"v\": [1, 2, 3], \"v_noise\": 0.5}",
+      "{\"seq\": 2, \"t\": 7.51, \"p\": [0.1, -0.2]}",
+      "{\"seq\": 3, \"t\": 7.52, \"p\": [0.4, 0.5, 0.6], \"confidence\": 0.5}",
+      "{\"seq\": 4, \"t\": 7.53, \"p\": [0.4, 0.5, 0.6], \"confidence\": 0.7}"};
+  const int64_t have[] = {ETHD_SPACE_HAVE_READING | ETHD_SPACE_HAVE_READING_V, 0, 0, ETHD_SPACE_HAVE_READING};
+  for (int i = 0; i < 4; i++) {
+    const int64_t now = INT64_C(1000000000) + 10000000 * i;
+    ethd_space_sense s = {0};
+    send_text(fd, texts[i]);
+    ck_assert_int_eq(ethd_driver_camera.service(device, 0, now), ETHD_OK);
+    ck_assert_int_eq(ethd_driver_camera.read_space(device, now, &s), ETHD_OK);
+    ck_assert_int_eq(s.have, have[i]);
+    if (have[i]) ck_assert_int_eq(s.sample_ns, now - 1000000);
+    if (i == 0)
+      ck_assert(s.reading[2] == 0.3 && s.reading_noise == 0.013 && s.reading_v[1] == 2 && s.reading_v_noise == 0.5);
+    if (i == 3) ck_assert(s.reading[0] == 0.4 && s.reading[2] == 0.6 && s.reading_noise == 0);
+  }
+  ethd_driver_camera.close(device);
+  close(fd);
+}
+
 /* The first datagrams came late: the clock is placed 6 ms earlier by the third. Instants don't go back. */
 TEST(test_instants_keep_their_order) {
   ethd__inbox inbox;
