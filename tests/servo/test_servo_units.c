@@ -141,13 +141,59 @@ TEST(test_old_answer_of_the_second) {
 
 /* ---- a unit that vanishes ---- */
 
-static ethd_status open_pair(void) {
+static ethd_status open_pair(int is_virtual) {
   char folder[256];
-  ethd_setting settings[] = {{"map", PAIR, 1}, {"port", drive.port, 2}};
+  ethd_setting settings[] = {{"map", PAIR, 1}, {"port", drive.port, 2}, {"unguarded", "yes", 3}};
   ck_assert(getcwd(folder, sizeof folder) != NULL);
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, 2, folder, "d.ini", 1, NULL};
+  const ethd_device_def def = {&setup, settings, 3, folder, "d.ini", is_virtual, NULL};
   return servo->open(&def, &device, message);
+}
+
+/* Of two units one is asked after the other: the sense has the later one's instant, and the age of the other. */
+TEST(test_ages) {
+  int seen = 0;
+  mock_start(&drive, 0);
+  ck_assert_msg(open_pair(0) == ETHD_OK, "%s", message);
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+  for (int i = 0; i < 40; i++) {
+    (void)!servo->service(device, 0, ethd__clock_now());
+    memset(&sense, 0, sizeof sense);
+    const int64_t at = ethd__clock_now();
+    if (servo->read(device, at, &sense) != ETHD_OK) continue;
+    seen++;
+    ck_assert(sense.have & ETHD_HAVE_AGE && sense.time_ns <= at);
+    ck_assert((sense.age[0] > 0) != (sense.age[1] > 0) && fmin(sense.age[0], sense.age[1]) == 0);
+  }
+  ck_assert_int_gt(seen, 20);
+  servo->close(device);
+  mock_stop(&drive);
+}
+
+/* A torque over the register's limit goes out cut, and the sense says so; one that is only rounded isn't mentioned. */
+TEST(test_cut_torque) {
+  static const double asked[][2] = {{0.5, -0.25}, {1e3, 0.25}, {0.3, -1e3}};
+  mock_start(&drive, 0);
+  ck_assert_msg(open_pair(1) == ETHD_OK, "%s", message);
+  const double most = servo->limits(device).torque;
+  now = 0;
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+  for (int k = 0; k < 3; k++) {
+    const ethd_command command = {{asked[k][0], asked[k][1]}, 0, 0};
+    for (int i = 0; i < 3; i++) {
+      now += TICK;
+      (void)!servo->write(device, now, &command);
+      (void)!servo->service(device, 0, now);
+    }
+    memset(&sense, 0, sizeof sense);
+    ck_assert_int_eq(servo->read(device, now, &sense), ETHD_OK);
+    ck_assert_int_eq((sense.have & ETHD_HAVE_COMMANDED) != 0, k > 0);
+    for (int i = 0; i < 2 && k > 0; i++)
+      ck_assert_double_eq_tol(sense.commanded[i], fmax(-most, fmin(most, asked[k][i])), 1e-2 * most);
+    ck_assert(!(sense.have & ETHD_HAVE_AGE)); /* on a virtual clock an exchange takes no time */
+  }
+  servo->close(device);
+  mock_stop(&drive);
 }
 
 static int pushes(const _Atomic uint16_t *words) { return words[MOCK_TORQUE1] != 0; }
@@ -172,7 +218,7 @@ static void tick(void) {
 TEST_LOOP(test_one_vanishes, 0, 2) {
   int gone = 1 + _i, until = 0;
   mock_start(&drive, 0);
-  ck_assert_msg(open_pair() == ETHD_OK, "%s", message);
+  ck_assert_msg(open_pair(1) == ETHD_OK, "%s", message);
   now = 0;
   ck_assert_int_eq(servo->start(device), ETHD_OK);
   /* until ten ticks in a row went well: on a busy machine an answer may be missing */
@@ -208,7 +254,7 @@ static mock_act drop_one(void *user, uint64_t n, int function) {
 
 TEST(test_one_missing) {
   mock_start(&drive, 0);
-  ck_assert_msg(open_pair() == ETHD_OK, "%s", message);
+  ck_assert_msg(open_pair(1) == ETHD_OK, "%s", message);
   now = 0;
   ck_assert_int_eq(servo->start(device), ETHD_OK);
   for (uint64_t of = 0; of < 6; of++) { /* each of an exchange's questions */
