@@ -33,7 +33,7 @@ awk '{ gsub(/[^-+.e0-9 ]/, ""); rows++; least = $1 < least ? $1 : least; most = 
 
 # ---- space: within the stopping distance it slows down, and at the end it stands in the wall ----
 compiled space ethd && "$work/space" >"$work/space.out" || fail "space: exit $?"
-awk '{ rows++; if ($1 == "nan") next; d = $1; v = $6; state = $9; if (d < -1e-6 || (d > 0 && v * 0.009 + v * v / 16 > d + 1e-3)) bad = 1 }
+awk '{ rows++; if ($1 == "nan") next; d = $1; v = $6; state = $9; if (d < -1e-6 || (d > 0 && v * 0.001 + v * v / 16 > d + 1e-3)) bad = 1 }
   END { exit !(rows == 50 && !bad && d < 1e-4 && v < 1e-3 && state == 2) }' "$work/space.out" || fail "space: $(tail -n 3 "$work/space.out")"
 
 # ---- cap: it stands in the wall when the finger comes to its inside, and stops when the finger leaves ----

@@ -56,7 +56,7 @@ refused 'room.solids: holds solids of space' ethd-scene query --scene apps/confi
 "$BUILD/tests/space_tap" $ini "$folder/rec" || fail "no recording"
 "$bin/ethd-replay" --verify "$folder/rec" >"$folder/page" 2>&1 || fail "verify: $(cat "$folder/page")"
 page 'rec: 4000 ticks, equal to the bit'
-sed 's/set,ability.delay 0.02/set,ability.delay 0.021/' "$folder/rec/events.csv" >"$folder/changed" && cp -r "$folder/rec" "$folder/other" && cp "$folder/changed" "$folder/other/events.csv"
+sed 's/set,transition.effort 0.7/set,transition.effort 0.71/' "$folder/rec/events.csv" >"$folder/changed" && cp -r "$folder/rec" "$folder/other" && cp "$folder/changed" "$folder/other/events.csv"
 "$bin/ethd-replay" --verify "$folder/other" >"$folder/page" 2>&1 && fail "another gain verifies"
 page 'other: tick 2[0-9]*: .*: recorded '
 refused "config.ini: \[space\] is for the front in space" ethd-identify "$folder/rec" --out "$folder/x.plant"

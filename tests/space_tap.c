@@ -37,8 +37,8 @@ int main(int argc, char **argv) {
     ethd_space_trace trace;
     ethd_event event;
     if (tick == TICKS / 2) {
-      need(ethd_recording_event(recording, "set", "ability.delay 0.02"));
-      need(ethd_config_space_set(config, "ability.delay", "0.02", &setup, message));
+      need(ethd_recording_event(recording, "set", "transition.effort 0.7"));
+      need(ethd_config_space_set(config, "transition.effort", "0.7", &setup, message));
       need(ethd_space_post(space, &setup, &error));
     }
     const size_t count = ethd_solids_surfaces(config->solids, NULL, at, 0.5, near, 8);

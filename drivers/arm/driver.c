@@ -139,12 +139,8 @@ static ethd_status write_arm(void *device_, int64_t now_ns, const ethd_space_com
 
 static void safe(void *device_) ETHD_RT { ((arm_device *)device_)->safe = 1; }
 
-/* As the controller sees the arm: the place and speed of the sense are those commanded, which are never late. How late
-   the arm itself is, is a figure for people. */
 static ethd_ability able(const void *device_, const double n[3]) ETHD_RT {
-  ethd_ability able = ethd__arm_motion_able(&((const arm_device *)device_)->sim.motion, ethd_vec3_of(n));
-  able.delay = 0;
-  return able;
+  return ethd__arm_motion_able(&((const arm_device *)device_)->sim.motion, ethd_vec3_of(n));
 }
 
 static uint32_t figures(const void *device_, ethd_figure *out, uint32_t max) {

@@ -114,7 +114,7 @@ typedef struct ethd_facts {
   double applied;       /* N along n: force of the last tick's torque, after the guard */
   double friction;      /* N: Coulomb friction along n */
   double viscous;       /* Ns/m */
-  double delay;         /* s from the joint sample to the force */
+  double delay;         /* s from the joint sample to the force; 0 where the place is the one commanded (space.h) */
   double lag;           /* s: delay of v (ethd_velocity_lag) */
   double ring_radius;   /* R_r, m */
   double finger_radius; /* R_f, m */

@@ -21,7 +21,8 @@
 
    A law of velocity must see the place and speed that are *commanded*, not those that are measured: a measured place is
    late by the device's delay, and the effector would go that much deeper. So for velocity commands the sense's x and v
-   are the commanded ones, and the delay stands in `ability`. */
+   are the commanded ones, and ethd_facts.delay is 0: nothing that the law sees is late. The device's delay stands in
+   `ability`; ethd-check says how much of the gap it takes. */
 #ifndef ETHD_SPACE_H
 #define ETHD_SPACE_H
 

@@ -8,8 +8,8 @@
      transparent or  ------------------------------------> vo  -------------------------------------------------->
      braking: v <= f(d)                                    v = +-f(|d|)    transparent again
 
-   f(d) is the highest speed from which the device stops at the distance d (d_re): a command needs the delay t_d to show,
-   then the device brakes with a = effort * acceleration:
+   f(d) is the highest speed from which the device stops at the distance d (d_re): a command needs the delay t_d to show
+   (0 where d is that of the place commanded), then the device brakes with a = effort * acceleration:
 
      d = v t_d + v^2 / (2 a)    so    f(d) = a (sqrt(t_d^2 + 2 d / a) - t_d) = 2 d / (t_d + sqrt(t_d^2 + 2 d / a))
 

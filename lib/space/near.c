@@ -112,7 +112,7 @@ static void facts(const void *front, const ethd_contact *contact, ethd_facts *ou
   out->applied = by_velocity ? (double)NAN : ethd_vec3_dot(contact->n, state->last);
   out->friction = a->friction;
   out->viscous = (double)NAN;
-  out->delay = a->delay;
+  out->delay = by_velocity ? 0 : a->delay; /* the place that is commanded is never late */
   out->lag = 0;
   out->ring_radius = t->plan->setup.radius;
   out->finger_radius = t->plan->setup.finger_radius;

@@ -102,7 +102,6 @@ static void step(trial *t) {
   ethd_surface near = t->wall;
   ethd__arm_sim_read(&t->sim, &sense);
   ethd_ability able = ethd__arm_motion_able(&t->sim.motion, t->wall.n);
-  able.delay = 0; /* the law sees where the plate is commanded to be, which isn't late */
   memcpy(sense.ability, &able, sizeof sense.ability);
   sense.have |= ETHD_SPACE_HAVE_ABILITY;
   const ethd_vec3 x = ethd_vec3_of(sense.x);

@@ -165,7 +165,8 @@ static void step(ethd_loop *l) {
   if (l->dry) l->front->rehearse(l);
   if (l->dry) begin = ethd__loop_now(l);
   l->dry = 0;
-  l->tail.swaps += l->front->step(l);
+  const bool swapped = l->front->step(l);
+  l->tail.swaps += swapped;
   l->step = ethd__loop_now(l) - begin;
   end_step(l);
   l->missed = 0;
