@@ -464,15 +464,15 @@ def sweep_objects(ear):
 # How many of each there must be. A new key of a map, a new setting or a new driver changes its line: look at what is new.
 EXPECTED = """
 [device]     13  drivers
-[device]     72  key doubled
-[device]     72  key empty
+[device]     73  key doubled
+[device]     73  key empty
 [device]      9  key unknown
 [device]      4  keys without an owner
 [device]     13  lines
-[device]    288  not a number
+[device]    292  not a number
 [device]      7  not whole
-[device]    118  out of range
-[device]    142  overflow
+[device]    120  out of range
+[device]    144  overflow
 [device]      1  section doubled
 answers       8  another function
 answers      16  another number
