@@ -141,7 +141,7 @@ for i, row in enumerate(s.tick):
     sense["time_ns"], sense["have"], sense["x"], sense["v"] = 1000000 * i, 1, x, v
     sense["finger"], sense["finger_v"] = row["finger"], row["finger_v"]  # which C's sin and cos have made
     if i == 2000:
-        c.post({"ability.delay": 0.02})
+        c.post({"transition.effort": 0.7})
     step = c.step(sense, c.surfaces(x, 0.5))
     assert step.trace.tobytes() == row.tobytes() and step.value.tobytes() == row["command"].tobytes(), i
     v = step.value
