@@ -60,7 +60,7 @@ static void push(ethd_loop *l) {
   }
   unsigned head = atomic_load_explicit(&r->head, memory_order_relaxed);
   memcpy((char *)&l->row + l->front->tail, &l->tail, sizeof l->tail);
-  memcpy(r->at + (head % r->size) * r->bytes, &l->row, r->bytes);
+  ethd__loop_copy(l, &l->row, r->at + (head % r->size) * r->bytes);
   atomic_store_explicit(&r->head, head + 1, memory_order_release);
   l->tail.lost = 0;
   l->tail.marks = 0;

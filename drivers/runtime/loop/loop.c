@@ -52,7 +52,7 @@ static ethd_status take(ethd_loop *l, void *out) {
   ethd__loop_ring *r = &l->rows;
   unsigned tail = atomic_load_explicit(&r->tail, memory_order_relaxed);
   if (tail == atomic_load_explicit(&r->head, memory_order_acquire)) return ETHD_STATUS_EMPTY;
-  memcpy(out, r->at + (tail % r->size) * r->bytes, r->bytes);
+  ethd__loop_copy(l, r->at + (tail % r->size) * r->bytes, out);
   atomic_store_explicit(&r->tail, tail + 1, memory_order_release);
   return ETHD_OK;
 }
