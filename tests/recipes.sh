@@ -7,7 +7,7 @@ fail() { echo "FAILED $*"; exit 1; }
 [ -z "${SAN:-}" ] || { echo "SKIP: a sanitizer is too slow for a study"; exit 77; }
 python3=$(sh .ci/setup python) || fail "no python3 with numpy, which .ci/setup check brings"
 tree=$PWD
-mkdir -p "$folder/tree/apps" "$folder/bin" && cp -r apps/python apps/examples "$folder/tree/apps" && cp -r include LICENSE "$folder/tree"
+mkdir -p "$folder/tree/apps" "$folder/bin" && cp -r apps/python apps/examples apps/config "$folder/tree/apps" && cp -r include LICENSE "$folder/tree"
 ln -s "$(cd "$BUILD" && pwd)" "$folder/tree/build"
 awk -v to="$folder" '
   /^```(sh|python)$/ { n++; out = sprintf("%s/%02d.%s", to, n, substr($0, 4)); next }

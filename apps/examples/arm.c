@@ -1,0 +1,69 @@
+/* An arm in space, as its configuration says, in a loop of its own thread for some seconds:
+     cc arm.c -o arm $(pkg-config --cflags --libs ethd-drivers) -lm && ./arm arm.ini 5 */
+#include <ethd/config.h>
+#include <ethd/loop.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+static uint32_t near_solids(void *solids, const ethd_space_sense *sense, ethd_surface *out) ETHD_RT {
+  const size_t count = ethd_solids_surfaces(solids, NULL, ethd_vec3_of(sense->x), 0.5, out, ETHD_SURFACES_MAX);
+  return (uint32_t)(count < ETHD_SURFACES_MAX ? count : ETHD_SURFACES_MAX);
+}
+
+static int fail(const char *message) { return fprintf(stderr, "arm: %s\n", message), 1; }
+
+static void print(const ethd_space_row *row) {
+  const ethd_space_trace *t = &row->trace;
+  printf("%8.3f s  x %7.4f %7.4f %7.4f m  %8.5f m to the wall  %6.3f m/s  %s, %s\n", 1e-9 * (double)t->sense.time_ns,
+         t->sense.x[0], t->sense.x[1], t->sense.x[2], t->d_re, t->v_n, row->armed ? "armed" : "disarmed",
+         ethd_fault_sentence((ethd_fault)t->fault));
+}
+
+int main(int argc, char **argv) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd_error error = {0};
+  ethd_config *config;
+  ethd_device *device;
+  ethd_space *space;
+  ethd_loop *loop;
+  ethd_space_row row;
+  if (argc != 3) return fail("CONFIG SECONDS"), 2;
+  if (ethd_config_load(argv[1], &config, message)) return fail(message);
+  if (!config->is_space) return fail("the configuration has no section [space]");
+  ethd_space_setup *setup = &config->space;
+  const ethd_device_def def = {.settings = config->settings,
+                               .setting_count = config->setting_count,
+                               .folder = config->folder,
+                               .file = config->path,
+                               .space = setup};
+  if (ethd_device_open(config->device, NULL, &def, &device, message)) return fail(message);
+  const ethd_limits limits = ethd_device_limits(device);
+  setup->gap = fmin(setup->gap, limits.gap);
+  setup->finger_age = fmin(setup->finger_age, limits.finger_age);
+  setup->finger_lost = fmin(setup->finger_lost, limits.finger_lost);
+  if (ethd_space_create(setup, &space, &error)) return ethd_error_text(argv[1], &error, message), fail(message);
+  ethd_loop_def with = ethd_loop_default();
+  with.device = device, with.space = space, with.period = setup->period, with.gap = setup->gap;
+  if (config->solids) with.surfaces = near_solids, with.surfaces_of = config->solids;
+  if (ethd_loop_create(&with, &loop, &error)) return ethd_error_text("the loop", &error, message), fail(message);
+  if (ethd_device_start(device)) return fail("the device doesn't start");
+  if (ethd_loop_start(loop, &error)) return ethd_error_text("the loop", &error, message), fail(message);
+  int64_t shown = 0, fault = 0;
+  for (double end = atof(argv[2]); (double)ethd_loop_periods(loop) * setup->period < end && !ethd_loop_ended(loop);) {
+    usleep(20000);
+    while (ethd_loop_take_space(loop, &row) == ETHD_OK) {
+      if (row.trace.sense.time_ns - shown < 100000000 && row.trace.fault == fault) continue;
+      print(&row);
+      shown = row.trace.sense.time_ns, fault = row.trace.fault;
+    }
+  }
+  ethd_loop_stop(loop);
+  if (ethd_loop_join(loop)) return fail("the loop's thread hangs");
+  ethd_loop_destroy(loop);
+  (void)!ethd_device_stop(device);
+  ethd_device_close(device);
+  ethd_space_destroy(space);
+  ethd_config_free(config);
+}
