@@ -181,8 +181,8 @@ typedef struct ethd_ability {
   double friction;     /* N */
 } ethd_ability;
 
-/* Returns an ability whose numbers are all unknown (NaN). [any] */
-ETHD_API ethd_ability ethd_ability_unknown(void);
+/* Returns an ability whose numbers are all unknown (NaN). [any, rt-safe] */
+ETHD_API ethd_ability ethd_ability_unknown(void) ETHD_RT;
 
 /* Made by ethd_space_setup_default, then changed field by field. */
 typedef struct ethd_space_setup {

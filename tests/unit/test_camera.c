@@ -270,7 +270,7 @@ TEST(test_younger_than_the_tick) {
   memset(&inbox, 0, sizeof inbox);
   ck_assert_int_eq(ethd__inbox_open(&inbox, 90), ETHD_OK);
   inbox.newest =
-      (ethd__sighting){.sample_ns = 1000500, .arrival_ns = 1000700, .have = ETHD_HAVE_CENTRE, .centre = {0.2, 0.1}};
+      (ethd__sighting){.sample_ns = 1000500, .arrival_ns = 1000700, .have = ETHD_HAVE_CENTRE, .centre = {0.2, 0.1, 0}};
   ethd__inbox_judge(&inbox, true);
   ethd__inbox_put(&inbox);
   const int64_t now[] = {1000000, 1000499, 1000500, 2000000}, have[] = {0, 0, ETHD_HAVE_CENTRE, 0};

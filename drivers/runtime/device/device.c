@@ -83,7 +83,7 @@ int32_t ethd_device_in_space(const ethd_device *d) ETHD_RT { return d->in_space;
 
 static bool takes_commands(const ethd_device *d, uint32_t i) {
   const ethd_driver *driver = d->at[i].driver;
-  return d->in_space ? driver->write_space != NULL : driver->write != NULL;
+  return d->in_space ? !!driver->write_space : !!driver->write;
 }
 
 ethd_safe_state ethd_device_safe_is(const ethd_device *d) ETHD_RT {

@@ -71,7 +71,7 @@ static ethd_status check_driver(const naming *n, const ethd_driver *driver) {
 static ethd_status check_front(const naming *n, const ethd_driver *driver) {
   const ethd_driver d = ethd__driver_whole(driver);
   const bool plane = d.read || d.write, space = d.read_space || d.write_space;
-  n->device->takes |= d.write_space != NULL;
+  n->device->takes |= !!d.write_space;
   if (n->device->in_space ? space : plane || !space) return ETHD_OK;
   return ethd__say(n->message, ETHD_E_ARGUMENT, "%s: device.driver: %s has no part in a device in %s", file_of(n->def),
                    d.id, n->device->in_space ? "space" : "the plane");
