@@ -57,7 +57,7 @@ bool ethd__exposure_decode(const char *bytes, size_t count, ethd__exposure *out,
   json_t *p = NULL, *v = NULL;
   *out = (ethd__exposure){.confidence = 1};
   if (count > ETHD__EXPOSURE_SIZE) return refuse(why, "a datagram of at most 1024 bytes is allowed");
-  const locale_t own = uselocale(ethd__c_locale); /* by which jansson knows the decimal point */
+  const locale_t own = uselocale(ethd__c_locale); /* jansson asks it for the decimal point */
   json_t *root = json_loadb(bytes, count, JSON_REJECT_DUPLICATES, &error);
   const bool is_read = root && !json_unpack_ex(root, &error, JSON_STRICT, "{s:I, s:F, s?o, s?F, s?o, s?F, s?F}", "seq",
                                                &seq, "t", &t, "p", &p, "noise", &out->noise, "v", &v, "v_noise",

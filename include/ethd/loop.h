@@ -142,7 +142,7 @@ typedef struct ethd_loop_row {
   double heat[2]; /* of the motors when the device was last started, see ethd_control_heat */
 } ethd_loop_row;
 
-/* One tick in space, likewise. The sense's ability is the device's along the normal of the surface that is nearest to the
+/* One tick in space. The sense's ability is the device's along the normal of the surface that is nearest to the
    sense's x, unless the driver's read gave one; its `commanded` is what was written, where that wasn't the command as a
    whole, unless the driver's read knows better. */
 typedef struct ethd_space_row {
