@@ -6,9 +6,9 @@
    = lib/core/mail.c: if (tail == atomic_load_explicit(&m->head, memory_order_acquire)) return ETHD_STATUS_EMPTY;
    = lib/core/mail.c: *out = m->at[tail % ETHD__EVENTS];
    = lib/core/mail.c: atomic_store_explicit(&m->tail, tail + 1, memory_order_release);
-   = drivers/runtime/loop/cycle.c: memcpy(r->at + (head % r->size) * r->bytes, &l->row, r->bytes);
+   = drivers/runtime/loop/cycle.c: ethd__loop_copy(l, &l->row, r->at + (head % r->size) * r->bytes);
    = drivers/runtime/loop/cycle.c: atomic_store_explicit(&r->head, head + 1, memory_order_release);
-   = drivers/runtime/loop/loop.c: memcpy(out, r->at + (tail % r->size) * r->bytes, r->bytes);
+   = drivers/runtime/loop/loop.c: ethd__loop_copy(l, r->at + (tail % r->size) * r->bytes, out);
 
    Kept: what was pushed is taken whole, once, in order; and in the end, all of it. */
 #ifndef SIZE
