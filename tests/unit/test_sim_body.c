@@ -231,6 +231,27 @@ TEST_LOOP(test_energy, 0, 8) {
   ck_assert_int_gt(touches, 5);
 }
 
+/* A free arm keeps its energy, for a second, to 1e-10 J: coupled links that turn once round. (The arms of
+   drivers/arm have no mass; they follow speeds.) */
+TEST_LOOP(test_free_arm, 0, 2) {
+  ethd_sim_def def = quiet();
+  def.arm.mechanism = (ethd_mechanism)(_i & 1);
+  def.plant.coupling = 0.006;
+  world w;
+  alone(&def, 1.3, -0.6, &w);
+  w.state.v[0] = 6;
+  w.state.v[1] = -4;
+  const double before = ethd__body_energy(&w.body, &w.state, w.hand.a), begin = w.state.q[0];
+  double most = 0;
+  for (int i = 0; i < 100; i++) {
+    run(&w, 0.01, 1e-3);
+    most = fmax(most, fabs(ethd__body_energy(&w.body, &w.state, w.hand.a) - before));
+  }
+  printf("%.3f J, within %.1e J, turned %.1f\n", before, most, w.state.q[0] - begin);
+  ck_assert_double_ge(before, 0.1);
+  ck_assert_double_le(most, 1e-10);
+}
+
 /* Work of a torque is the energy it leaves: tau dq of the joints. */
 TEST_LOOP(test_work, 0, 2) {
   ethd_sim_def def = quiet();
