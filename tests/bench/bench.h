@@ -22,8 +22,10 @@ void bench_fits(const char *folder, int quick);
 void bench_filters(const char *folder, int quick);
 void bench_velocity(const char *folder, int quick);
 
-/* Of the kinematics: an arm in space. */
+/* Of the kinematics: an arm in space, and its joints that follow. */
+extern const double bench_ur5e[6][4]; /* a, alpha, d, angle: apps/config/ur5e.arm */
 void bench_linkage(const char *folder, int quick);
+void bench_following(const char *folder, int quick);
 
 /* Returns the cost of two clock readings in a row, ns: the median of many. */
 double bench_clock_cost(void);

@@ -134,6 +134,7 @@ static void run(const char *folder, int quick) {
   }
   bench_close();
   bench_linkage(folder, quick);
+  bench_following(folder, quick);
 }
 
 const bench bench_kinematics = {"kinematics", run};

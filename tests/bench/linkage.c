@@ -9,9 +9,8 @@
 
 enum { PLACES = 1024, JOINTS = ETHD__PEER_JOINTS, NUMBERS = ETHD__PEER_LINKAGE };
 
-/* a, alpha, d, angle: apps/config/ur5e.arm */
-static const double rows[JOINTS][4] = {{0, M_PI / 2, 0.1625, 0}, {-0.425, 0, 0, 0},         {-0.3922, 0, 0, 0},
-                                       {0, M_PI / 2, 0.1333, 0}, {0, -M_PI / 2, 0.0997, 0}, {0, 0, 0.0996, 0}};
+const double bench_ur5e[JOINTS][4] = {{0, M_PI / 2, 0.1625, 0}, {-0.425, 0, 0, 0},         {-0.3922, 0, 0, 0},
+                                      {0, M_PI / 2, 0.1333, 0}, {0, -M_PI / 2, 0.0997, 0}, {0, 0, 0.0996, 0}};
 
 typedef struct workload {
   double in[PLACES][JOINTS], out[PLACES][NUMBERS];
@@ -26,7 +25,8 @@ static void make_places(workload *w) {
   ethd__dh_row dh[JOINTS];
   for (uint64_t i = 0; i < PLACES; i++)
     for (uint64_t k = 0; k < JOINTS; k++) w->in[i][k] = draw(8 * i + k, -M_PI, M_PI);
-  for (int k = 0; k < JOINTS; k++) dh[k] = (ethd__dh_row){rows[k][0], rows[k][2], rows[k][1], rows[k][3]};
+  for (int k = 0; k < JOINTS; k++)
+    dh[k] = (ethd__dh_row){bench_ur5e[k][0], bench_ur5e[k][2], bench_ur5e[k][1], bench_ur5e[k][3]};
   ethd__linkage_make(ETHD__DH_STANDARD, dh, JOINTS, &base, (ethd_vec3){0, 0, 0}, (ethd_vec3){0, 0, 1}, &w->linkage);
 }
 
@@ -73,7 +73,7 @@ static void exact(const double *q, long double out[NUMBERS]) {
       at[k][i] = m[i][3];
       out[6 + 6 * k + i] = m[i][2];
     }
-    append(m, rows[k], q[k]);
+    append(m, bench_ur5e[k], q[k]);
   }
   for (int i = 0; i < 3; i++) out[i] = m[i][3];
   for (int k = 0; k < JOINTS; k++)
@@ -106,7 +106,7 @@ void bench_linkage(const char *folder, int quick) {
     if (!found) continue;
     memcpy(w[count].in, w[0].in, sizeof w[0].in);
     w[count].peer = found;
-    w[count].peer_self = found->create(rows);
+    w[count].peer_self = found->create(bench_ur5e);
     entries[count] = (bench_entry){found->name, peer, &w[count], PLACES, 0};
     count++;
   }

@@ -30,6 +30,17 @@ typedef struct ethd__peer_linkage {
   void (*destroy)(void *self);
 } ethd__peer_linkage;
 
+/* `peer_following`, ended by a row without a name: the joints of such an arm follow commanded speeds by a second order,
+   critically damped, from rest at 0. Each item of `in` is the speeds that are held for a period, of `out` the angles and
+   what a linkage gives, both after it. */
+enum { ETHD__PEER_FOLLOWING = ETHD__PEER_JOINTS + ETHD__PEER_LINKAGE };
+typedef struct ethd__peer_following {
+  const char *name;
+  void *(*create)(const double (*rows)[4], double frequency, double period);
+  void (*work)(void *self, const double (*in)[ETHD__PEER_JOINTS], double (*out)[ETHD__PEER_FOLLOWING], size_t count);
+  void (*destroy)(void *self);
+} ethd__peer_following;
+
 /* `peer_filter`: a Kalman filter of constant acceleration with 3x3 matrices, alike for both axes, which does what the
    finger filter's `ca` does: it starts in the same way, has the same fading memory, and moves from sample to sample. An item of `in` is
    a tick's reading x y and its age in s, NaN without one; an item of `out` is x y now. A tick takes `period`. */

@@ -107,25 +107,95 @@ static void *create_linkage(const double (*rows)[4]) {
   return s;
 }
 
+static void look(mujoco_solver *s, const double *q, double *out) {
+  double moves[3 * JOINTS], turns[3 * JOINTS];
+  memcpy(s->data->qpos, q, JOINTS * sizeof *q);
+  mj_kinematics(s->model, s->data);
+  mj_comPos(s->model, s->data);
+  mj_jacSite(s->model, s->data, moves, turns, 0);
+  memcpy(out, s->data->site_xpos, 3 * sizeof *out);
+  for (int j = 0; j < JOINTS; j++)
+    for (int k = 0; k < 3; k++) {
+      out[3 + 6 * j + k] = moves[JOINTS * k + j];
+      out[6 + 6 * j + k] = turns[JOINTS * k + j];
+    }
+}
+
 static void work_linkage(void *self, const double (*in)[JOINTS], double (*out)[ETHD__PEER_LINKAGE], size_t count) {
-  mujoco_solver *s = self;
-  for (size_t i = 0; i < count; i++) {
-    double moves[3 * JOINTS], turns[3 * JOINTS];
-    memcpy(s->data->qpos, in[i], sizeof in[i]);
-    mj_kinematics(s->model, s->data);
-    mj_comPos(s->model, s->data);
-    mj_jacSite(s->model, s->data, moves, turns, 0);
-    memcpy(out[i], s->data->site_xpos, 3 * sizeof **out);
-    for (int j = 0; j < JOINTS; j++)
-      for (int k = 0; k < 3; k++) {
-        out[i][3 + 6 * j + k] = moves[JOINTS * k + j];
-        out[i][6 + 6 * j + k] = turns[JOINTS * k + j];
-      }
-  }
+  for (size_t i = 0; i < count; i++) look(self, in[i], out[i]);
 }
 
 extern const ethd__peer_linkage peer_linkage;
 const ethd__peer_linkage peer_linkage = {"MuJoCo 3.3.7", create_linkage, work_linkage, destroy};
+
+/* ---- joints that follow: unit masses behind MuJoCo's first-order activation, w act - w v on each ---- */
+
+typedef struct mujoco_follower {
+  mujoco_solver *masses, *linkage;
+  int steps; /* of a period */
+} mujoco_follower;
+
+static void *create_follower(const double (*rows)[4], double frequency, double period, int steps, mjtIntegrator how) {
+  char text[4096] =
+      "<mujoco><option gravity='0 0 0'><flag constraint='disable' contact='disable'/></option><worldbody>";
+  size_t n = strlen(text);
+  mujoco_follower *f = calloc(1, sizeof *f);
+  if (!f) return NULL;
+  f->masses = calloc(1, sizeof *f->masses);
+  f->linkage = create_linkage(rows);
+  f->steps = steps;
+  for (int i = 0; i < JOINTS; i++)
+    n += (size_t)snprintf(text + n, sizeof text - n,
+                          "<body><joint name='%d' type='slide' axis='1 0 0'/>"
+                          "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body>",
+                          i);
+  n += (size_t)snprintf(text + n, sizeof text - n, "</worldbody><actuator>");
+  for (int i = 0; i < JOINTS; i++)
+    n += (size_t)snprintf(text + n, sizeof text - n,
+                          "<general joint='%d' dyntype='%s' dynprm='%.17g' gainprm='%.17g' biastype='affine' "
+                          "biasprm='0 0 %.17g'/>",
+                          i, how == mjINT_RK4 ? "filter" : "filterexact", 1 / frequency, frequency, -frequency);
+  snprintf(text + n, sizeof text - n, "</actuator></mujoco>");
+  f->masses->model = load(text);
+  f->masses->model->opt.integrator = how;
+  f->masses->model->opt.timestep = period / steps;
+  f->masses->data = mj_makeData(f->masses->model);
+  return f;
+}
+
+static void *create_euler_follower(const double (*rows)[4], double frequency, double period) {
+  return create_follower(rows, frequency, period, 4, mjINT_EULER);
+}
+
+static void *create_rk4_follower(const double (*rows)[4], double frequency, double period) {
+  return create_follower(rows, frequency, period, 1, mjINT_RK4);
+}
+
+static void work_follower(void *self, const double (*in)[JOINTS], double (*out)[ETHD__PEER_FOLLOWING], size_t count) {
+  mujoco_follower *f = self;
+  mjData *d = f->masses->data;
+  mj_resetData(f->masses->model, d);
+  for (size_t i = 0; i < count; i++) {
+    memcpy(d->ctrl, in[i], sizeof in[i]);
+    for (int k = 0; k < f->steps; k++) mj_step(f->masses->model, d);
+    memcpy(out[i], d->qpos, JOINTS * sizeof **out);
+    look(f->linkage, d->qpos, out[i] + JOINTS);
+  }
+}
+
+static void destroy_follower(void *self) {
+  mujoco_follower *f = self;
+  destroy(f->masses);
+  destroy(f->linkage);
+  free(f);
+}
+
+extern const ethd__peer_following peer_following[];
+const ethd__peer_following peer_following[] = {
+    {"MuJoCo 3.3.7 Euler 0.5 ms", create_euler_follower, work_follower, destroy_follower},
+    {"MuJoCo 3.3.7 RK4 2 ms", create_rk4_follower, work_follower, destroy_follower},
+    {0},
+};
 
 _Static_assert(mjVERSION_HEADER == 337, "the version is in the names");
 
