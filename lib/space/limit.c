@@ -13,6 +13,7 @@
 
 #define FAST 1.05    /* times the speed limit at which a commanded effector is stopped */
 #define OUTSIDE 1e-9 /* m: more than rounding takes an effector over its workspace's bound */
+#define ROUNDED 1e-9 /* share by which rounding takes a command over the speed, at most */
 #define BOUNDS (ETHD_CONTACTS_MAX + ETHD__FACES)
 
 /* Returns the time since the last command, s: also a tick without measurement gave one, zero. */
@@ -87,7 +88,7 @@ static ethd_vec3 cut_across(ethd_vec3 u, double most, const ethd_vec3 *own, int 
   if (ethd_vec3_norm(u) <= most) return u;
   for (int i = 0; i < count; i++) along = ethd_vec3_add(along, ethd_vec3_scale(ethd_vec3_dot(u, own[i]), own[i]));
   const double part = ethd_vec3_norm(along);
-  if (part >= most) return ethd_vec3_scale(most / part, along);
+  if (part >= most) return ethd_vec3_scale(most > 0 ? most / part : 0, along);
   const ethd_vec3 across = ethd_vec3_sub(u, along);
   const double left = sqrt((most - part) * (most + part)) * (1 - 1e-15);
   return ethd_vec3_add(along, ethd_vec3_scale(left / ethd_vec3_norm(across), across));
@@ -100,7 +101,7 @@ typedef struct limits {
 } limits;
 
 /* Goes from the last command towards `to` by at most the acceleration, first along the normals of those bounds that are
-   `due` (bits), in their order. */
+   `due` (bits), in their order. A last command over the speed, as after a post of a lower one, doesn't rise further. */
 static ethd_vec3 go(const ethd__space_tick *t, ethd_vec3 to, const limits *l, unsigned due) {
   ethd_vec3 from = t->state->last, left = ethd_vec3_sub(to, from), own[3];
   double most = t->plan->setup.acceleration * since_last(t);
@@ -118,9 +119,9 @@ static ethd_vec3 go(const ethd__space_tick *t, ethd_vec3 to, const limits *l, un
     most = sqrt(fmax(most * most - part * part, 0));
     found++;
   }
-  const double rest = ethd_vec3_norm(left);
-  return cut_across(ethd_vec3_add(from, rest > most ? ethd_vec3_scale(most / rest, left) : left), t->plan->setup.speed,
-                    own, found);
+  const double rest = ethd_vec3_norm(left), had = ethd_vec3_norm(t->state->last), speed = t->plan->setup.speed;
+  return cut_across(ethd_vec3_add(from, rest > most ? ethd_vec3_scale(most / rest, left) : left),
+                    had > speed * (1 + ROUNDED) ? had : speed, own, found);
 }
 
 static bool satisfies(ethd_vec3 u, const struct ethd__bound *b) { return ethd_vec3_dot(b->n, u) <= b->speed; }
