@@ -53,8 +53,9 @@ ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage, char
     status = ethd_recording_event(recording, "set", detail);
   }
   const ethd_setup *was = &stage->study->config->setup, *is = &stage->setup;
-  if (!status) status = ethd__limits_event(recording, was, is);
-  if (!status && ETHD_LAW_HAS(is->transition, range)) status = ethd__dynamics_event(recording, was, is);
+  if (!status) status = ethd__section_events(recording, &ethd__front_plane, "limits", was, is);
+  if (!status && ETHD_LAW_HAS(is->transition, range))
+    status = ethd__section_events(recording, &ethd__front_plane, "arm", was, is);
   snprintf(detail, sizeof detail, "%.17g %.17g", stage->heat[0], stage->heat[1]);
   if (!status && (stage->heat[0] > 0 || stage->heat[1] > 0)) status = ethd_recording_event(recording, "heat", detail);
   return said(ticks, status, message);

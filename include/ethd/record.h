@@ -60,7 +60,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
 /* Writes an event to events.csv (row,kind,detail); the events of a row of tick.npy come before it, in order. kind:
      setup       detail: law. The configuration's setup with this transition law, in a new controller
      start       detail: free words. A new controller (or a reset one) with the present setup; with "enabled" the
-                 running one was restarted and its motors keep their heat; in space it was reset
+                 running one was restarted and, in the plane, its motors keep their heat
      transition  detail: law. Changes the transition law of the present setup
      contact     detail: law. Changes its contact law
      tracking    detail: law. Changes its tracking law

@@ -142,7 +142,7 @@ static void record(void) {
   ethd_space_acknowledge(p.space);
   run(&p, 200);
   event(&p, "start", "enabled");
-  ethd_space_reset(p.space);
+  ethd_space_restart(p.space);
   run(&p, 100);
   ck_assert(p.state[0] > 100 && p.state[2] > 100);
   ck_assert_int_eq(ethd_recording_tick(p.recording, &(ethd_trace){.state = 0}), ETHD_E_ARGUMENT);

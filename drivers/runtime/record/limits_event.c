@@ -11,34 +11,29 @@
 #define TEXT_MAX 256
 #define SECOND ((int64_t)1000000000) /* ns */
 
-static ethd_status tell(ethd_recording *recording, const ethd_limit *row, const double *values) {
-  char text[TEXT_MAX];
-  int n = snprintf(text, sizeof text, "limits.%s", row->name);
-  for (uint32_t i = 0; i < row->count; i++) n += snprintf(text + n, sizeof text - (size_t)n, " %.17g", values[i]);
-  return ethd_recording_event(recording, "set", text);
+/* Adds the key's numbers to the text; returns true if one has changed. */
+static bool list_values(const ethd__config_front *front, const ethd_setup_key *key, const void *was, const void *is,
+                        char text[TEXT_MAX]) {
+  char name[96];
+  bool changed = false;
+  int n = snprintf(text, TEXT_MAX, "%s.%s", key->section, key->param.name);
+  for (uint32_t i = 0; i < key->count; i++) {
+    snprintf(name, sizeof name, key->count > 1 ? "%s.%s[%u]" : "%s.%s", key->section, key->param.name, i);
+    const double now = front->get(is, name);
+    changed |= !isnan(now) && now != front->get(was, name);
+    n += snprintf(text + n, (size_t)(TEXT_MAX - n), " %.17g", now);
+  }
+  return changed;
 }
 
-ethd_status ethd__limits_event(ethd_recording *recording, const ethd_setup *was, const ethd_setup *is) {
-  ethd_limits before = was->limits, now = is->limits;
-  ethd_status status = ETHD_OK;
-  for (const ethd_limit *row = ethd_limit_rows; !status && row < ethd_limit_rows + ETHD_LIMITS; row++) {
-    const double *values = ethd_limit_of(&now, row);
-    if (memcmp(ethd_limit_of(&before, row), values, row->count * sizeof *values) != 0)
-      status = tell(recording, row, values);
-  }
-  return status;
-}
-
-ethd_status ethd__dynamics_event(ethd_recording *recording, const ethd_setup *was, const ethd_setup *is) {
-  static const char *const names[] = {"arm.mass_x", "arm.mass_y", "arm.friction", "arm.viscous", "arm.delay"};
+ethd_status ethd__section_events(ethd_recording *recording, const ethd__config_front *front, const char *section,
+                                 const void *was, const void *is) {
   char text[TEXT_MAX];
+  ethd_setup_key key;
   ethd_status status = ETHD_OK;
-  for (size_t i = 0; !status && i < sizeof names / sizeof *names; i++) {
-    double now = ethd_setup_get(is, names[i]);
-    if (isnan(now) || now == ethd_setup_get(was, names[i])) continue;
-    snprintf(text, sizeof text, "%s %.17g", names[i], now);
-    status = ethd_recording_event(recording, "set", text);
-  }
+  for (uint32_t i = 0; !status && front->key_at(is, i, &key) == ETHD_OK; i++)
+    if (!strcmp(key.section, section) && list_values(front, &key, was, is, text))
+      status = ethd_recording_event(recording, "set", text);
   return status;
 }
 

@@ -3,14 +3,12 @@
 #define ETHD__RECORD_LIMITS_EVENT_H
 
 #include "ethd/record.h"
+#include "settings/front.h"
 
-/* Writes an event "set limits.X ..." for every limit in which `is` differs from `was`, because a replay has no device
-   to ask. */
-ETHD_MUST_CHECK ethd_status ethd__limits_event(ethd_recording *recording, const ethd_setup *was, const ethd_setup *is);
-
-/* Does the same for the dynamics, "set arm.X ...", if a law that looks ahead rules or may be swapped in. */
-ETHD_MUST_CHECK ethd_status ethd__dynamics_event(ethd_recording *recording, const ethd_setup *was,
-                                                 const ethd_setup *is);
+/* Writes an event "set SECTION.KEY ..." for every number of this section of a setup (front.h) in which `is` differs from
+   `was` and is known, because a replay has no device to ask. */
+ETHD_MUST_CHECK ethd_status ethd__section_events(ethd_recording *recording, const ethd__config_front *front,
+                                                 const char *section, const void *was, const void *is);
 
 /* Writes the event `clock`: the date at the instant of a tick that has just come, by the monotonic clock if the
    device's instants are that clock's. */

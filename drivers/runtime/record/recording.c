@@ -6,9 +6,9 @@
 #include <unistd.h>
 
 #include "ethd/record.h"
+#include "record/controller.h"
 #include "record/npy_parts.h"
 #include "record/recording_parts.h"
-#include "record/replayed.h"
 #include "settings/config_parts.h"
 #include "text/csv.h"
 #include "text/error_text.h"
@@ -20,7 +20,7 @@
 struct ethd_recording {
   ethd_npy *ticks;
   FILE *events;
-  const ethd__replayed *front;
+  const ethd__controller *front;
   uint64_t rows; /* that came, whether they are in the file or lost */
   ethd__claim claim;
   char *folder, failure[ETHD_MESSAGE_MAX]; /* "": none */
@@ -128,7 +128,7 @@ ethd_status ethd_recording_create(const char *folder, const ethd_config *config,
   ethd_recording *recording = calloc(1, sizeof *recording);
   if (!recording) return ethd__no_memory(message, folder);
   recording->claim = ETHD_CLAIM_NONE;
-  recording->front = ethd__replayed_of(config);
+  recording->front = ethd__controller_of(config);
   recording->folder = strdup(folder);
   ethd_status status = ethd__recording_claim(folder, config, replace, &recording->claim, message);
   if (!status) status = open_files(folder, recording, message);
@@ -180,18 +180,19 @@ ethd_status ethd_recording_event(ethd_recording *recording, const char *kind, co
   return ethd__recording_fail(recording, ETHD_RECORDING_EVENTS, errno ? errno : EIO);
 }
 
-static ethd_status add_row(ethd_recording *recording, const ethd_column *columns, const void *row) {
-  if (recording->front->columns != columns) return ETHD_E_ARGUMENT;
+ethd_status ethd__recording_row(ethd_recording *recording, const void *trace) {
   recording->rows++;
-  return ethd_npy_append(recording->ticks, row, 1) ? ticks_failed(recording) : ETHD_OK;
+  return ethd_npy_append(recording->ticks, trace, 1) ? ticks_failed(recording) : ETHD_OK;
 }
 
 ethd_status ethd_recording_tick(ethd_recording *recording, const ethd_trace *trace) {
-  return add_row(recording, ethd_trace_columns, trace);
+  if (recording->front->columns != ethd_trace_columns) return ETHD_E_ARGUMENT;
+  return ethd__recording_row(recording, trace);
 }
 
 ethd_status ethd_recording_tick_space(ethd_recording *recording, const ethd_space_trace *trace) {
-  return add_row(recording, ethd_space_trace_columns, trace);
+  if (recording->front->columns != ethd_space_trace_columns) return ETHD_E_ARGUMENT;
+  return ethd__recording_row(recording, trace);
 }
 
 /* Writes the last event after ticks that are all in the file. */

@@ -26,6 +26,9 @@ typedef struct ethd__record_events {
 /* Reports, the first time, that the file `name` of the recording can't be written; returns ETHD_E_FILE. [main] */
 ethd_status ethd__recording_fail(ethd_recording *recording, const char *name, int reason);
 
+/* Adds a row, a trace of the recording's front. ETHD_E_FILE, as ethd_recording_tick. [main] */
+ETHD_MUST_CHECK ethd_status ethd__recording_row(ethd_recording *recording, const void *trace);
+
 /* Makes the folder of a new recording, locks it and removes an earlier one; see ethd_recording_create. [main] */
 ETHD_MUST_CHECK ethd_status ethd__recording_claim(const char *folder, const ethd_config *config, bool replace,
                                                   ethd__claim *out, char message[ETHD_MESSAGE_MAX]);

@@ -5,9 +5,9 @@
 
 #include "denormals.h"
 #include "ethd/record.h"
+#include "record/controller.h"
 #include "record/npy_parts.h"
 #include "record/recording_parts.h"
-#include "record/replayed.h"
 #include "settings/config_parts.h"
 #include "text/error_text.h"
 #include "text/file.h"
@@ -18,8 +18,8 @@ typedef struct verification {
   bool plugins;
   char *events_path;
   ethd_config *config;
-  const ethd__config_front *front; /* of the configuration */
-  const ethd__replayed *replayed;  /* and of its controller */
+  const ethd__config_front *front;  /* of the configuration */
+  const ethd__controller *replayed; /* and its controller */
   ethd__record_events events;
   char *tick_path;
   ethd__npy_reader rows;
@@ -41,7 +41,7 @@ static ethd_status open_config(verification *r) {
   free(path);
   if (status) return status;
   r->front = ethd__front_of(r->config);
-  r->replayed = ethd__replayed_of(r->config);
+  r->replayed = ethd__controller_of(r->config);
   memcpy(&r->setup, ethd__front_setup(r->config), r->front->bytes);
   return ETHD_OK;
 }
@@ -235,12 +235,15 @@ static ethd_status run(verification *r, const volatile int *stop) {
       ethd_space_trace space;
     } trace;
     const void *recorded;
+    ethd_event event;
     ethd_status status = ethd__npy_reader_next(&r->rows, &recorded, r->message);
     if (!status) status = before_row(r, row);
     if (status) return status;
     memset(&trace, 0, sizeof trace);
     ethd__config_foreign(r->config, "a plugin's law");
     r->replayed->step(r->control, recorded, &trace);
+    while (r->replayed->poll(r->control, &event) == ETHD_OK)
+      continue; /* a setup is taken only while events have room */
     ethd__config_foreign(r->config, NULL);
     status = compare(r, row, recorded, &trace);
     if (status) return r->missing ? unreplayable(r, row) : status;

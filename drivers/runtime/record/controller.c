@@ -1,4 +1,4 @@
-#include "record/replayed.h"
+#include "record/controller.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,21 +18,32 @@ static ethd_status plane_post(void *control, const void *setup, ethd_error *erro
   return ethd_control_post(control, setup, error);
 }
 
+static ethd_status plane_poll(void *control, ethd_event *out) { return ethd_control_poll(control, out); }
 static void plane_restart(void *control) { ethd_control_restart(control); }
 static void plane_acknowledge(void *control) { ethd_control_acknowledge(control); }
+static double plane_clean_time(void *control) { return ethd_control_clean_time(control); }
+static void plane_counters(void *control, ethd_counters *out) { ethd_control_counters(control, out); }
 static void plane_set_heat(void *control, const double heat[2]) { ethd_control_set_heat(control, heat); }
 static void plane_set_memory(void *control, const double *memory) { ethd_control_set_memory(control, memory); }
 
 static void plane_step(void *control, const void *row, void *trace) {
   ethd_command command;
-  ethd_event event;
   (void)ethd_control_step(control, &((const ethd_trace *)row)->sense, &command, trace);
-  while (ethd_control_poll(control, &event) == ETHD_OK) continue;
 }
 
-static const ethd__replayed plane = {ethd_trace_columns, sizeof(ethd_trace), NULL,          plane_create,
-                                     plane_destroy,      plane_post,         plane_restart, plane_acknowledge,
-                                     plane_set_heat,     plane_set_memory,   plane_step};
+static const ethd__controller plane = {.columns = ethd_trace_columns,
+                                       .row_bytes = sizeof(ethd_trace),
+                                       .create = plane_create,
+                                       .destroy = plane_destroy,
+                                       .post = plane_post,
+                                       .poll = plane_poll,
+                                       .restart = plane_restart,
+                                       .acknowledge = plane_acknowledge,
+                                       .clean_time = plane_clean_time,
+                                       .counters = plane_counters,
+                                       .set_heat = plane_set_heat,
+                                       .set_memory = plane_set_memory,
+                                       .step = plane_step};
 
 /* ---- space ---- */
 
@@ -49,8 +60,11 @@ static ethd_status space_post(void *control, const void *setup, ethd_error *erro
   return ethd_space_post(control, setup, error);
 }
 
-static void space_restart(void *control) { ethd_space_reset(control); }
+static ethd_status space_poll(void *control, ethd_event *out) { return ethd_space_poll(control, out); }
+static void space_restart(void *control) { ethd_space_restart(control); }
 static void space_acknowledge(void *control) { ethd_space_acknowledge(control); }
+static double space_clean_time(void *control) { return ethd_space_clean_time(control); }
+static void space_counters(void *control, ethd_counters *out) { ethd_space_counters(control, out); }
 
 /* Gives the surfaces that the tick looked at; one that is impossible where it refused them. */
 static uint32_t surfaces_of(const ethd_space_trace *row, ethd_surface out[ETHD_NEAR_MAX]) {
@@ -71,23 +85,22 @@ static void space_step(void *control, const void *row, void *trace) {
   const ethd_space_trace *recorded = row;
   ethd_surface near[ETHD_NEAR_MAX];
   ethd_space_command command;
-  ethd_event event;
   const uint32_t count = surfaces_of(recorded, near);
   (void)ethd_space_step(control, &recorded->sense, near, count, &command, trace);
-  while (ethd_space_poll(control, &event) == ETHD_OK) continue;
 }
 
 /* Surfaces that found no room in a row are counted in `overflow`, but can't be shown again. */
-static const ethd__replayed space = {ethd_space_trace_columns,
-                                     sizeof(ethd_space_trace),
-                                     "overflow",
-                                     space_create,
-                                     space_destroy,
-                                     space_post,
-                                     space_restart,
-                                     space_acknowledge,
-                                     NULL,
-                                     NULL,
-                                     space_step};
+static const ethd__controller space = {.columns = ethd_space_trace_columns,
+                                       .row_bytes = sizeof(ethd_space_trace),
+                                       .unrepeated = "overflow",
+                                       .create = space_create,
+                                       .destroy = space_destroy,
+                                       .post = space_post,
+                                       .poll = space_poll,
+                                       .restart = space_restart,
+                                       .acknowledge = space_acknowledge,
+                                       .clean_time = space_clean_time,
+                                       .counters = space_counters,
+                                       .step = space_step};
 
-const ethd__replayed *ethd__replayed_of(const ethd_config *config) { return config->is_space ? &space : &plane; }
+const ethd__controller *ethd__controller_of(const ethd_config *config) { return config->is_space ? &space : &plane; }
