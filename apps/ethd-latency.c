@@ -125,7 +125,7 @@ static void measure(ethd_loop_stats *out, int32_t *shortfalls, double *period) {
   ethd__progress(1, 1, "");
   ethd_loop_read(session.loop, out);
   *shortfalls = ethd_loop_shortfalls(session.loop);
-  *period = session.setup.period;
+  *period = session.period;
   ethd__session_halt(&session, ethd__stop);
   status = ethd__session_end(&session, message);
   if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);

@@ -12,7 +12,8 @@
 #define POLL 20 /* ms between looks at signals and the duration */
 
 static const char doc[] =
-    "Runs a device under the controller, one tick in each period, until the duration ends or the command stop, Ctrl-C, "
+    "Runs a device, in the plane or in space, under the controller, one tick in each period, until the duration ends "
+    "or the command stop, Ctrl-C, "
     "SIGTERM or SIGHUP comes. Then it stops the ring and disables the device. Ctrl-Z is ignored, since a stopped "
     "program can't control the ring.\v"
     "Commands are read from stdin, one on a line. The answer to each is a line that begins with ok or error:\n"
@@ -31,6 +32,7 @@ static const char doc[] =
     "stepped as fast as the machine can, and equal input gives equal bytes.\n\n"
     "Examples:\n"
     "  ethd-run --config device.ini --record session\n"
+    "  ethd-run --config ur5e.ini --virtual --duration 5 --record reach </dev/null\n"
     "  echo transition smooth | ethd-run --virtual --duration 2";
 
 enum {
@@ -56,8 +58,8 @@ static const struct argp_option options[] = {
     {"duration", 'd', "S", 0, "end after S seconds; needed with --virtual", 0},
     {"record", OPTION_RECORD, "DIR", 0, "record every tick, for ethd-replay --verify", 0},
     {"record-every", OPTION_KEEPS, "N", 0,
-     "record only each Nth tick, for long runs; such a recording can't be replayed. A tick has 776 bytes: 2.8 GB in an "
-     "hour at 1 kHz",
+     "record only each Nth tick, for long runs; such a recording can't be replayed. A tick has 776 bytes "
+     "(2040 in space): 2.8 GB in an hour at 1 kHz",
      0},
     {"force", OPTION_FORCE, NULL, 0, "replace an existing recording", 0},
     {"snapshot", OPTION_SNAPSHOT, "FILE.npy", 0,

@@ -25,7 +25,7 @@ plant lock --lock-step 1 --period 3000 --finger 0
 peer --tcp 0
 ask() { # NAME MAP TORQUE
   configure "$1" "$2"
-  "$conform" --config "$folder/$1.ini" --virtual --move --torque "$3" >"$folder/$1" 2>&1
+  "$conform" --config "$folder/$1.ini" --virtual --move --push "$3" >"$folder/$1" 2>&1
   code=$?
 }
 ask servo plant.map 0.3
@@ -54,7 +54,7 @@ else
   configure live live.map
 fi
 for _ in 1 2 3; do
-  $alone "$conform" --config "$folder/live.ini" --move --torque 0.3 >"$folder/live" 2>&1 6>&- 8>&-
+  $alone "$conform" --config "$folder/live.ini" --move --push 0.3 >"$folder/live" 2>&1 6>&- 8>&-
   others=$(grep -v '^sense' "$folder/live" | grep -c '^[a-z]*  *kept ')
   [ "$others" = 10 ] && grep -q -e '^sense  *kept ' -e '^sense .* it reports: ' "$folder/live" && break
   others=0

@@ -76,15 +76,15 @@ static int swap(day *d, ethd__session *s, uint64_t i) {
   static const ethd_transition_law *const laws[] = {&ethd_transition_smooth, &ethd_transition_offset,
                                                     &ethd_transition_abrupt, &ethd_transition_predictive};
   uint64_t r = draw_bits(i ^ d->session << 32);
-  ethd_setup setup = s->setup;
+  ethd__setup_copy setup = s->setup;
   char detail[64];
   const ethd_transition_law *law = laws[r % 4];
   double k = 500 + (double)(r >> 8 & 2047);
   if (r >> 40 & 1) {
-    ethd_setup_transition(&setup, law);
+    ethd_setup_transition(&setup.plane, law);
     snprintf(detail, sizeof detail, "%s", law->law.id);
   } else {
-    if (ethd_setup_set(&setup, "contact.k_e", k, NULL)) return 1;
+    if (ethd_setup_set(&setup.plane, "contact.k_e", k, NULL)) return 1;
     snprintf(detail, sizeof detail, "contact.k_e %.17g", k);
   }
   d->swaps++;
@@ -92,7 +92,7 @@ static int swap(day *d, ethd__session *s, uint64_t i) {
 }
 
 static void recover(ethd__session *s) {
-  if (ethd__recorder_latest(&s->recorder).trace.fault) ethd_loop_acknowledge(s->loop);
+  if (ethd__recorder_fault(&s->recorder)) ethd_loop_acknowledge(s->loop);
   ethd__session_tick(s);
   ethd__session_tick(s);
   if (!ethd_loop_armed(s->loop)) (void)!ethd__session_enable(s);

@@ -61,6 +61,15 @@ trial damaged 'armed, no fault' 0.304
 trial protective 'disarmed, the drive reports a fault' 0.1
 trial disconnect 'disarmed, the link to the servo is lost' 0.1
 
+# ethd-run drives it, too; the recording knows the camera's limit of a reading's age, and replays
+"$PYTHON" tests/peers/arm_peer.py $port $port none 4 >"$folder/peer" 2>&1 &
+peer=$!
+for wait in $(seq 100); do grep -q ready "$folder/peer" && break || sleep 0.2; done
+"$BUILD/bin/ethd-run" --config "$folder/arm.ini" --duration 1.5 --record "$folder/run" </dev/null >"$folder/said" 2>&1 || fail "ethd-run: $(cat "$folder/said")"
+wait $peer
+says "$folder/run/events.csv" '^0,set,space.finger_lost [0-9.]*$'
+"$BUILD/bin/ethd-replay" --verify "$folder/run" >"$folder/said" 2>&1 || fail "the recording: $(cat "$folder/said")"
+
 # a place where nobody answers
 sed 's/tcp_arm.at = .*/tcp_arm.at = 127.0.0.1:1/' "$folder/arm.ini" >"$folder/none.ini"
 "$folder/arm" "$folder/none.ini" 1 >"$folder/said" 2>&1 && fail "it opens without an arm"

@@ -243,17 +243,12 @@ char *ethd__given_or_data(const char *name) {
   return copy_of(name);
 }
 
-ethd_status ethd__refuse_space(const ethd_config *config, char message[ETHD_MESSAGE_MAX]) {
-  if (!config->is_space) return ETHD_OK;
-  return ethd__say(message, ETHD_E_ARGUMENT,
-                   "%s: [space] is for the front in space: ethd-check checks it, a program of your own runs it "
-                   "(apps/examples/space.c), ethd-replay --verify repeats its recordings",
-                   config->path ? config->path : "configuration");
-}
-
 void ethd__need_plane(const ethd_config *config) {
-  char message[ETHD_MESSAGE_MAX];
-  if (ethd__refuse_space(config, message)) ethd__fail(ETHD_EXIT_INPUT, "%s", message);
+  if (config->is_space)
+    ethd__fail(ETHD_EXIT_INPUT,
+               "%s: [space] is for a device in space, and this program works in the plane; ethd-run, ethd-conform, "
+               "ethd-check and ethd-replay --verify take it",
+               config->path ? config->path : "configuration");
 }
 
 void ethd__need_recording(const char *folder) {

@@ -68,9 +68,7 @@ char *ethd__given_or_data(const char *name);
    are read and replaced there (text/file.h). NULL: there is none. */
 void ethd__receive(const char *folder);
 
-/* Refuses a configuration of the front in space, which a program of the plane can't run (ETHD_E_ARGUMENT), and says what
-   can; the other one exits 2 then. */
-ETHD_MUST_CHECK ethd_status ethd__refuse_space(const ethd_config *config, char message[ETHD_MESSAGE_MAX]);
+/* Exits 2 at a configuration of the front in space, for a program that works in the plane alone. */
 void ethd__need_plane(const ethd_config *config);
 
 /* Exits 2 unless the folder holds a recording. */

@@ -2,8 +2,7 @@
 
 #include <stdio.h>
 
-ethd__law_fault ethd__law_fault_of(const ethd_setup *setup, const ethd_event *event) {
-  const ethd_law *laws[] = {&setup->tracking->law, &setup->contact->law, &setup->transition->law};
+ethd__law_fault ethd__law_fault_of(const ethd_law *const laws[ETHD_TRANSITION + 1], const ethd_event *event) {
   int value = (int)event->value, kind = event->code == ETHD_FAULT_LAW ? value / 100 : value;
   if (event->kind != ETHD_EVENT_FAULT || (event->code != ETHD_FAULT_LAW && event->code != ETHD_FAULT_FINITE) ||
       kind < 0 || kind > ETHD_TRANSITION)
@@ -14,10 +13,11 @@ ethd__law_fault ethd__law_fault_of(const ethd_setup *setup, const ethd_event *ev
 }
 
 ethd__law_fault ethd__law_fault_take(ethd_control *control, const ethd_setup *setup) {
+  const ethd_law *const laws[] = {&setup->tracking->law, &setup->contact->law, &setup->transition->law};
   ethd__law_fault first = {0};
   ethd_event event;
   while (ethd_control_poll(control, &event) == ETHD_OK)
-    if (!first.law) first = ethd__law_fault_of(setup, &event);
+    if (!first.law) first = ethd__law_fault_of(laws, &event);
   return first;
 }
 

@@ -9,8 +9,8 @@ typedef struct ethd__law_fault {
   const char *what;    /* a sentence */
 } ethd__law_fault;
 
-/* Returns the law of this active setup that caused the event's fault. */
-ethd__law_fault ethd__law_fault_of(const ethd_setup *setup, const ethd_event *event);
+/* Returns which of the active laws, by their kind, caused the event's fault. */
+ethd__law_fault ethd__law_fault_of(const ethd_law *const laws[ETHD_TRANSITION + 1], const ethd_event *event);
 
 /* Takes all events that wait and returns the first of a law's faults among them. */
 ethd__law_fault ethd__law_fault_take(ethd_control *control, const ethd_setup *setup);

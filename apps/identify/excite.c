@@ -28,9 +28,9 @@ typedef struct seen {
   atomic_bool over;         /* set before the stop that ends the session, which is no fault */
 } seen;
 
-static void take(void *seen_, const ethd_loop_row *row) {
+static void take(void *seen_, const ethd__row *row) {
   seen *s = seen_;
-  const ethd_trace *t = &row->trace;
+  const ethd_trace *t = &row->plane.trace;
   if (atomic_load(&s->over)) return;
   s->farthest = fmax(s->farthest, fmax(fabs(t->x[0] - s->at.x), fabs(t->x[1] - s->at.y)));
   s->fastest = fmax(s->fastest, hypot(t->v[0], t->v[1]));

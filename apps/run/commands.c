@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "cli/terminal.h"
+#include "settings/config_parts.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
@@ -24,8 +25,8 @@ static void answer(const char *format, ...) {
 
 /* ---- the commands ---- */
 
-static void post(ethd__session *s, ethd_status status, const ethd_setup *setup, const char *kind, const char *detail,
-                 char *message) {
+static void post(ethd__session *s, ethd_status status, const ethd__setup_copy *setup, const char *kind,
+                 const char *detail, char *message) {
   if (!status) status = ethd__session_post(s, setup, kind, detail, message);
   if (status)
     answer("error: %s", message);
@@ -35,9 +36,9 @@ static void post(ethd__session *s, ethd_status status, const ethd_setup *setup, 
 
 static void law(ethd__session *s, const char *kind, const char *id) {
   char message[ETHD_MESSAGE_MAX] = "";
-  ethd_setup setup = s->setup;
+  ethd__setup_copy setup = s->setup;
   if (*id)
-    post(s, ethd_config_law(s->config, kind, id, &setup, message), &setup, kind, id, message);
+    post(s, ethd__config_law(s->config, s->front->config, kind, id, &setup, message), &setup, kind, id, message);
   else
     answer("error: %s LAW", kind);
 }
@@ -48,7 +49,7 @@ static void transition(ethd__session *s, ethd__commands *c, char *rest) { (void)
 
 static void set(ethd__session *s, ethd__commands *c, char *rest) {
   char message[ETHD_MESSAGE_MAX] = "", detail[ETHD__LINE_MAX];
-  ethd_setup setup = s->setup;
+  ethd__setup_copy setup = s->setup;
   size_t key = strcspn(rest, " \t");
   char *value = rest + key + strspn(rest + key, " \t");
   (void)c;
@@ -58,27 +59,26 @@ static void set(ethd__session *s, ethd__commands *c, char *rest) {
   }
   rest[key] = 0;
   snprintf(detail, sizeof detail, "%s %s", rest, value);
-  post(s, ethd_config_set(s->config, rest, value, &setup, message), &setup, "set", detail, message);
+  post(s, ethd__config_set(s->config, s->front->config, rest, value, &setup, message), &setup, "set", detail, message);
 }
 
 static void status(ethd__session *s, ethd__commands *c, char *rest) {
-  static const char *const states[] = {"transparent", "braking", "vo"};
   static ethd_loop_stats stats;
-  ethd_loop_row row = ethd__recorder_latest(&s->recorder);
-  const ethd_trace *k = &row.trace;
+  const ethd__row row = ethd__recorder_latest(&s->recorder);
+  const ethd_law *laws[ETHD_TRANSITION + 1];
+  char says[256];
   (void)c, (void)rest;
   ethd_loop_read(s->loop, &stats);
-  answer("ok: t %.3f s, %s, %s, %s, beta %.3f, ring %.4f %.4f m, torque %.4f %.4f Nm, %" PRIu64 " overruns, %s",
-         ethd__session_time(s), ethd_loop_armed(s->loop) ? "enabled" : "disabled", s->setup.transition->law.id,
-         k->state >= 0 && k->state < 3 ? states[k->state] : "?", k->beta, k->x[0], k->x[1], row.share * k->tau[0],
-         row.share * k->tau[1], stats.overruns, ethd_fault_sentence((ethd_fault)k->fault));
+  s->front->laws(&s->setup, laws);
+  s->front->say(&s->setup, &row, says, sizeof says);
+  answer("ok: t %.3f s, %s, %s, %s, %" PRIu64 " overruns, %s", ethd__session_time(s),
+         ethd_loop_armed(s->loop) ? "enabled" : "disabled", laws[ETHD_TRANSITION]->id, says, stats.overruns,
+         ethd_fault_sentence(ethd__recorder_fault(&s->recorder)));
 }
 
-static bool faulty(ethd__session *s) { return ethd__recorder_latest(&s->recorder).trace.fault != 0; }
+static bool faulty(ethd__session *s) { return ethd__recorder_fault(&s->recorder) != ETHD_FAULT_NONE; }
 
-static const char *latched(ethd__session *s) {
-  return ethd_fault_sentence((ethd_fault)ethd__recorder_latest(&s->recorder).trace.fault);
-}
+static const char *latched(ethd__session *s) { return ethd_fault_sentence(ethd__recorder_fault(&s->recorder)); }
 
 /* The device is asked at once to leave a fault of its own. The controller's fault goes when nothing has gone wrong for
    long enough; where the device had a fault, that is at the second ack. */
@@ -89,7 +89,7 @@ static void ack(ethd__session *s, ethd__commands *c, char *rest) {
     answer("error: there is no fault to acknowledge");
     return;
   }
-  double clean = ethd_control_clean_time(s->control), needed = s->setup.limits.clean_time;
+  double needed, clean = ethd__session_clean_time(s, &needed);
   if (clean < needed * (1 - 1e-9)) {
     answer("error: nothing has gone wrong for %.3f s, %g s are required", clean, needed);
     return;

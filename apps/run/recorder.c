@@ -8,12 +8,12 @@
 
 #include "cli/cli.h"
 #include "record/limits_event.h"
+#include "record/recording_parts.h"
 #include "run/telemetry.h"
 #include "text/text.h"
 
 #define STACK ((size_t)512 << 10)
-#define PAUSE 2000000 /* ns */
-#define FINGER (ETHD_HAVE_FINGER | ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS)
+#define PAUSE 2000000  /* ns */
 #define TELEMETRY 0.01 /* s */
 
 void ethd__recorder_begin(ethd__recorder *r, double period) {
@@ -65,57 +65,59 @@ static void tell_loop(ethd__recorder *r, uint64_t lost, bool failed_before) {
 
 /* Updates what the recorder shares with the main thread: the newest row, and the posts that wait. Hands those that rule
    from this row on to `taken` and returns their number. */
-static int share(ethd__recorder *r, const ethd_loop_row *row, ethd__post taken[ETHD__POSTS_MAX]) {
+static int share(ethd__recorder *r, const ethd__row *row, const ethd__row_head *head,
+                 ethd__post taken[ETHD__POSTS_MAX]) {
   int count = 0;
   pthread_mutex_lock(&r->lock);
-  for (; r->swaps < row->swaps && count < r->waiting; r->swaps++) count++;
+  for (; r->swaps < head->swaps && count < r->waiting; r->swaps++) count++;
   memcpy(taken, r->posts, (size_t)count * sizeof *taken);
   r->waiting -= count;
   memmove(r->posts, r->posts + count, (size_t)r->waiting * sizeof *taken);
   r->latest = *row;
-  r->clearings += (row->marks & ETHD_ROW_CLEARED) != 0;
+  r->clearings += (head->marks & ETHD_ROW_CLEARED) != 0;
   pthread_mutex_unlock(&r->lock);
   return count;
 }
 
 /* On a virtual clock a recording is the same on every day. */
-static void tell_date(ethd__recorder *r, const ethd_loop_row *row) {
-  if (r->recording && ethd__clock_event(r->recording, row->trace.sense.time_ns)) r->failed = true;
+static void tell_date(ethd__recorder *r, int64_t instant) {
+  if (r->recording && ethd__clock_event(r->recording, instant)) r->failed = true;
 }
 
 /* Writes a row and what happened before it, in the order of a recording. Returns true if a fault that stops the ring
    begins. */
-static bool record(ethd__recorder *r, const ethd_loop_row *row, const ethd__post *posts, int count) {
+static bool record(ethd__recorder *r, const ethd__row_head *row, const ethd__post *posts, int count) {
   tell_lost(r, row->lost);
-  if (!r->rows && r->dated) tell_date(r, row);
+  if (!r->rows && r->dated) tell_date(r, row->time_ns);
   if (row->marks & ETHD_ROW_STARTED && r->rows) event(r, "start", "enabled");
   tell_posts(r, posts, count);
   if (row->marks & ETHD_ROW_CLEARED) event(r, "clear", "");
-  bool begins = tell_fault(r, row->trace.fault);
+  bool begins = tell_fault(r, row->fault);
   if (r->rows % r->keeps == 0 || begins) {
-    if (r->recording && ethd_recording_tick(r->recording, &row->trace)) r->failed = true;
+    if (r->recording && ethd__recording_row(r->recording, row->trace)) r->failed = true;
     r->written++;
   }
-  r->fault = row->trace.fault;
+  r->fault = row->fault;
   r->rows++;
   return begins;
 }
 
-static void take(ethd__recorder *r, const ethd_loop_row *row) {
+static void take(ethd__recorder *r, const ethd__row *row) {
+  const ethd__row_head head = r->front->head(row);
   bool failed_before = r->failed;
   ethd__post posts[ETHD__POSTS_MAX];
-  int count = share(r, row, posts);
-  bool begins = record(r, row, posts, count);
-  tell_loop(r, row->lost, failed_before);
-  if (row->trace.sense.have & FINGER) atomic_store(&r->sees_finger, 1);
+  int count = share(r, row, &head, posts);
+  bool begins = record(r, &head, posts, count);
+  tell_loop(r, head.lost, failed_before);
+  if (head.sees_finger) atomic_store(&r->sees_finger, 1);
   if (r->sink.take) r->sink.take(r->sink.self, row);
-  ethd__snapshot_take(&r->snapshot, &row->trace, begins);
-  if (r->telemetry >= 0 && r->rows % r->every == 0) ethd__telemetry_send(r->telemetry, row);
+  ethd__snapshot_take(&r->snapshot, head.trace, begins ? (ethd_fault)head.fault : ETHD_FAULT_NONE);
+  if (r->telemetry >= 0 && r->rows % r->every == 0) ethd__telemetry_send(r->telemetry, r->columns, &head);
 }
 
 void ethd__recorder_drain(ethd__recorder *r) {
-  ethd_loop_row row;
-  while (ethd_loop_take(r->loop, &row) == ETHD_OK) take(r, &row);
+  ethd__row row;
+  while (r->front->take(r->loop, &row) == ETHD_OK) take(r, &row);
 }
 
 /* ---- thread ---- */
@@ -175,11 +177,16 @@ void ethd__recorder_withdraw(ethd__recorder *r) {
   pthread_mutex_unlock(&r->lock);
 }
 
-ethd_loop_row ethd__recorder_latest(ethd__recorder *r) {
+ethd__row ethd__recorder_latest(ethd__recorder *r) {
   pthread_mutex_lock(&r->lock);
-  ethd_loop_row row = r->latest;
+  ethd__row row = r->latest;
   pthread_mutex_unlock(&r->lock);
   return row;
+}
+
+ethd_fault ethd__recorder_fault(ethd__recorder *r) {
+  const ethd__row row = ethd__recorder_latest(r);
+  return (ethd_fault)r->front->head(&row).fault;
 }
 
 uint64_t ethd__recorder_clearings(ethd__recorder *r) {

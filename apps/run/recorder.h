@@ -7,8 +7,8 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
-#include "ethd/loop.h"
 #include "ethd/record.h"
+#include "run/front.h"
 #include "run/snapshot.h"
 
 #define ETHD__POSTS_MAX 4
@@ -23,10 +23,12 @@ typedef struct ethd__post {
 /* Another taker of every row, called on the recorder's thread. */
 typedef struct ethd__sink {
   void *self;
-  void (*take)(void *self, const ethd_loop_row *row); /* NULL: none */
+  void (*take)(void *self, const ethd__row *row); /* NULL: none */
 } ethd__sink;
 
 typedef struct ethd__recorder {
+  const ethd__session_front *front;
+  const ethd_column *columns; /* of a row's trace */
   ethd_loop *loop;
   ethd__sink sink;
   ethd_recording *recording; /* NULL: none */
@@ -45,7 +47,7 @@ typedef struct ethd__recorder {
   ethd__post posts[ETHD__POSTS_MAX];
   int waiting;               /* posts */
   uint64_t swaps, clearings; /* clearings: rows so far whose step cleared faults */
-  ethd_loop_row latest;
+  ethd__row latest;
 
   /* the recorder's thread alone uses these until it has ended */
   uint64_t rows, lost;
@@ -56,7 +58,7 @@ typedef struct ethd__recorder {
   bool failed; /* the recording couldn't be written */
 } ethd__recorder;
 
-/* recorder->loop, recording and telemetry are set. */
+/* recorder->front, columns, loop, recording and telemetry are set. */
 void ethd__recorder_begin(ethd__recorder *recorder, double period);
 ETHD_MUST_CHECK ethd_status ethd__recorder_start(ethd__recorder *recorder);
 
@@ -74,7 +76,10 @@ ETHD_MUST_CHECK ethd_status ethd__recorder_thinned(ethd__recorder *recorder);
 bool ethd__recorder_expect(ethd__recorder *recorder, const char *kind, const char *detail);
 void ethd__recorder_withdraw(ethd__recorder *recorder);
 
-ethd_loop_row ethd__recorder_latest(ethd__recorder *recorder);
+ethd__row ethd__recorder_latest(ethd__recorder *recorder);
+
+/* Returns the fault that is latched, by the newest row. */
+ethd_fault ethd__recorder_fault(ethd__recorder *recorder);
 uint64_t ethd__recorder_clearings(ethd__recorder *recorder);
 
 #endif

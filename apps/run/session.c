@@ -20,13 +20,15 @@
 /* Names the law that failed and says what it did. */
 static void tell_law(const ethd__session *s, const ethd_event *event) {
   char text[ETHD_MESSAGE_MAX];
-  const ethd__law_fault fault = ethd__law_fault_of(&s->setup, event);
+  const ethd_law *laws[ETHD_TRANSITION + 1];
+  s->front->laws(&s->setup, laws);
+  const ethd__law_fault fault = ethd__law_fault_of(laws, event);
   if (fault.law) fprintf(stderr, "%s: %s\n", program_invocation_short_name, ethd__law_fault_text(&fault, text));
 }
 
 void ethd__session_poll(ethd__session *s) {
   ethd_event event;
-  while (ethd_control_poll(s->control, &event) == ETHD_OK)
+  while (s->controller->poll(s->control, &event) == ETHD_OK)
     if (event.kind == ETHD_EVENT_TAKEN)
       s->posted = false;
     else
@@ -54,7 +56,7 @@ static void pass(ethd__session *s) {
   }
 }
 
-double ethd__session_time(const ethd__session *s) { return (double)ethd_loop_periods(s->loop) * s->setup.period; }
+double ethd__session_time(const ethd__session *s) { return (double)ethd_loop_periods(s->loop) * s->period; }
 
 bool ethd__session_lives(const ethd__session *s) {
   return !ethd_loop_ended(s->loop) && !ethd_loop_hangs(s->loop, NULL);
@@ -78,14 +80,14 @@ bool ethd__session_sees_finger(ethd__session *s) {
 
 /* ---- while it runs ---- */
 
-ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const char *kind, const char *detail,
+ethd_status ethd__session_post(ethd__session *s, const ethd__setup_copy *setup, const char *kind, const char *detail,
                                char message[ETHD_MESSAGE_MAX]) {
   ethd_error error = {0};
   if (!settle(s)) return ethd__say(message, ETHD_STATUS_BUSY, "%s", ethd_status_sentence(ETHD_STATUS_BUSY));
   if (!ethd__recorder_expect(&s->recorder, kind, detail))
     return ethd__say(message, ETHD_E_FULL, "%s", ethd_status_sentence(ETHD_E_FULL));
   ethd__config_foreign(s->config, "the check of a plugin's law");
-  ethd_status status = ethd_control_post(s->control, setup, &error);
+  ethd_status status = s->controller->post(s->control, setup, &error);
   ethd__config_foreign(s->config, NULL);
   if (status) {
     ethd__recorder_withdraw(&s->recorder);
@@ -109,25 +111,34 @@ ethd_status ethd__session_enable(ethd__session *s) {
   return status;
 }
 
+double ethd__session_clean_time(const ethd__session *s, double *needed) {
+  char key[64];
+  snprintf(key, sizeof key, "%s.clean_time", s->front->limits);
+  *needed = s->front->config->get(&s->setup, key);
+  return s->controller->clean_time(s->control);
+}
+
 bool ethd__session_acknowledge(ethd__session *s) {
   uint64_t before = ethd__recorder_clearings(&s->recorder);
   ethd_loop_acknowledge(s->loop);
   for (int i = 0; ethd__recorder_clearings(&s->recorder) == before && i < PATIENCE && ethd__session_lives(s); i++)
     pass(s);
-  return !ethd__recorder_latest(&s->recorder).trace.fault;
+  return !ethd__recorder_fault(&s->recorder);
 }
 
 /* Stops by a speed limit of 0: the guard stops the ring and removes the torque. */
 void ethd__session_halt(ethd__session *s, bool told) {
-  char message[ETHD_MESSAGE_MAX];
-  ethd_setup setup = s->setup;
+  char message[ETHD_MESSAGE_MAX], key[64], detail[64];
+  ethd__setup_copy setup = s->setup;
+  snprintf(key, sizeof key, "%s.speed", s->front->limits);
+  snprintf(detail, sizeof detail, "%s 0", key);
   atomic_store(&s->recorder.stopping, 1);
   if (told) {
     ethd_loop_raise(s->loop, ETHD_FAULT_APPLICATION);
     ethd__session_await_tick(s);
   }
-  setup.limits.speed = 0;
-  if (ethd_loop_armed(s->loop) && !ethd__session_post(s, &setup, "set", "limits.speed 0", message))
+  ethd_status status = s->front->config->set(&setup, key, 0);
+  if (!status && ethd_loop_armed(s->loop) && !ethd__session_post(s, &setup, "set", detail, message))
     for (int i = 0; ethd_loop_armed(s->loop) && i < PATIENCE && ethd__session_lives(s); i++) pass(s);
   ethd_loop_disarm(s->loop);
   ethd__session_await_tick(s);
@@ -189,6 +200,6 @@ void ethd__session_free(ethd__session *s) {
   if (s->left) return;
   ethd_loop_destroy(s->loop);
   if (s->device) ethd_device_close(s->device);
-  ethd_control_destroy(s->control);
+  if (s->controller) s->controller->destroy(s->control);
   if (s->config) ethd_config_free(s->config);
 }

@@ -4,14 +4,16 @@
 
 #include <stdbool.h>
 
-#include "ethd/loop.h"
 #include "run/recorder.h"
 
 typedef struct ethd__session {
   ethd_config *config;
   ethd_device *device;
-  ethd_setup setup; /* the one that was posted last */
-  ethd_control *control;
+  const ethd__session_front *front;
+  const ethd__controller *controller; /* of that front, and */
+  void *control;                      /* one of them */
+  ethd__setup_copy setup;             /* the one that was posted last */
+  double period;                      /* s */
   ethd_loop *loop;
   ethd__recorder recorder;
   bool is_virtual, posted, started;
@@ -53,8 +55,12 @@ ETHD_MUST_CHECK ethd_status ethd__session_end(ethd__session *s, char message[ETH
 void ethd__session_free(ethd__session *s);
 
 /* Posts a changed setup; kind and detail as in events.csv. On a live session it rules when this returns. */
-ETHD_MUST_CHECK ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const char *kind,
+ETHD_MUST_CHECK ethd_status ethd__session_post(ethd__session *s, const ethd__setup_copy *setup, const char *kind,
                                                const char *detail, char message[ETHD_MESSAGE_MAX]);
+
+/* Returns for how long nothing has called for a stop since a fault was latched, s, and in *needed for how long an
+   acknowledgement requires it. */
+double ethd__session_clean_time(const ethd__session *s, double *needed);
 
 /* Acknowledges a latched fault and waits for the step that clears it, so that the next query sees the result. Returns false if a fault is latched after that step: the old one, or another. */
 bool ethd__session_acknowledge(ethd__session *s);

@@ -15,23 +15,24 @@
 #define HEARTBEAT 0.1 /* s */
 
 static ethd_status open_device(ethd__session *s, const char *folder, char *message) {
+  ethd_config *config = s->config;
   ethd_error error = {0};
-  const ethd_device_def def = {&s->config->setup,
-                               s->config->settings,
-                               s->config->setting_count,
-                               folder ? folder : s->config->folder,
-                               s->config->path,
-                               s->is_virtual,
-                               NULL};
-  ethd_status status = ethd_device_open(s->config->device, NULL, &def, &s->device, message);
+  const ethd_device_def def = {.setup = config->is_space ? NULL : &config->setup,
+                               .settings = config->settings,
+                               .setting_count = config->setting_count,
+                               .folder = folder ? folder : config->folder,
+                               .file = config->path,
+                               .is_virtual = s->is_virtual,
+                               .space = config->is_space ? &config->space : NULL};
+  ethd_status status = ethd_device_open(config->device, NULL, &def, &s->device, message);
   if (status) return status;
-  const ethd_limits limits = ethd_device_limits(s->device);
-  s->setup = s->config->setup;
-  s->setup.limits = ethd_limits_narrower(&limits, &s->config->setup.limits);
-  const ethd_dynamics dynamics = ethd_device_dynamics(s->device);
-  s->setup.dynamics = ethd_dynamics_known(&dynamics, &s->config->setup.dynamics);
-  status = ethd_control_create(&s->setup, &s->control, &error);
-  if (status) ethd_error_text(s->config->path, &error, message);
+  s->front = ethd__session_front_of(config);
+  s->controller = ethd__controller_of(config);
+  memcpy(&s->setup, ethd__front_setup(config), s->front->config->bytes);
+  s->period = config->is_space ? config->space.period : config->setup.period;
+  s->front->merge(s->device, &s->setup);
+  status = s->controller->create(&s->setup, &s->control, &error);
+  if (status) ethd_error_text(config->path, &error, message);
   return status;
 }
 
@@ -49,7 +50,9 @@ static ethd_status open_snapshot(ethd__session *s, const ethd__session_options *
     free(path);
     return status;
   }
-  ethd_status status = path ? ethd__snapshot_open(&s->recorder.snapshot, path, s->setup.period) : ETHD_E_MEMORY;
+  ethd_status status = path ? ethd__snapshot_open(&s->recorder.snapshot, path, s->period, s->controller->columns,
+                                                  s->controller->row_bytes)
+                            : ETHD_E_MEMORY;
   free(path);
   return status ? ethd__say(message, status, "--snapshot: %s", ethd_status_sentence(status)) : ETHD_OK;
 }
@@ -64,8 +67,9 @@ static ethd_status open_recorder(ethd__session *s, const ethd__session_options *
   if (status || !o->record) return status;
   status = ethd_recording_create(o->record, s->config, o->replace, &r->recording, message);
   if (status) return status;
-  status = ethd__limits_event(r->recording, &s->config->setup, &s->setup);
-  if (!status) status = ethd__dynamics_event(r->recording, &s->config->setup, &s->setup);
+  for (int i = 0; !status && i < 2 && s->front->merged[i]; i++)
+    status = ethd__section_events(r->recording, s->front->config, s->front->merged[i], ethd__front_setup(s->config),
+                                  &s->setup);
   if (!status && r->keeps > 1) status = ethd__recorder_thinned(r);
   return status ? ethd__say(message, status, "%s: %s", o->record, ethd_status_sentence(status)) : ETHD_OK;
 }
@@ -80,9 +84,7 @@ static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, c
   ethd_loop_def def = o->loop;
   ethd_error error = {0};
   def.device = s->device;
-  def.control = s->control;
-  def.period = s->setup.period;
-  def.gap = s->setup.limits.gap;
+  s->front->enter(s->config, &s->setup, s->control, &def);
   if (def.gap < (double)INFINITY) def.heartbeat = HEARTBEAT;
   def.clock = o->is_virtual ? &s->clock : NULL;
   ethd_status status = ethd_loop_create(&def, &s->loop, &error);
@@ -92,6 +94,8 @@ static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, c
     return status;
   }
   s->recorder.loop = s->loop;
+  s->recorder.front = s->front;
+  s->recorder.columns = s->controller->columns;
   ethd__recorder_begin(&s->recorder, def.period);
   if (o->home) status = ethd_device_home(s->device, NULL);
   if (!status) status = ethd_device_start(s->device);
@@ -112,7 +116,6 @@ ethd_status ethd__session_open(const ethd__session_options *o, ethd__session *s,
   ethd_status status = o->text ? ethd_config_parse(o->text, strlen(o->text), o->config ? o->config : "the defaults",
                                                    o->folder, &s->config, message)
                                : ethd_config_load(o->config, &s->config, message);
-  if (!status) status = ethd__refuse_space(s->config, message);
   if (!status) status = open_device(s, o->folder, message);
   if (!status) status = open_recorder(s, o, message);
   if (!status) status = open_loop(s, o, message);

@@ -18,13 +18,13 @@ static size_t rows_in(double seconds, double period) {
   return (size_t)fmin(fmax(1, round(seconds / period)), ROWS_MAX);
 }
 
-ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double period) {
-  *s = (ethd__snapshot){0};
-  if (!path) return ETHD_OK;
+ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double period, const ethd_column *columns,
+                                size_t row_bytes) {
+  *s = (ethd__snapshot){.columns = columns, .bytes = row_bytes};
   s->after = rows_in(AFTER, period);
   s->room = rows_in(BEFORE, period) + 1 + s->after;
   s->path = strdup(path);
-  s->rows = malloc(s->room * sizeof *s->rows);
+  s->rows = malloc(s->room * s->bytes);
   if (s->path && s->rows) return ETHD_OK;
   ethd__snapshot_close(s);
   return ETHD_E_MEMORY;
@@ -35,9 +35,10 @@ static ethd_status write_rows(ethd__snapshot *s, FILE *file, size_t n) {
   ethd_npy *npy;
   int fd = fcntl(fileno(file), F_DUPFD_CLOEXEC, 3);
   if (fd < 0) return ethd__say(s->message, ETHD_E_FILE, "%s: %s", s->path, strerror(errno));
-  ethd_status status = ethd__npy_begin(fd, s->path, ethd_trace_columns, sizeof *s->rows, &npy, s->message);
+  ethd_status status = ethd__npy_begin(fd, s->path, s->columns, s->bytes, &npy, s->message);
   if (status) return status;
-  for (size_t i = s->count - n; !status && i < s->count; i++) status = ethd_npy_append(npy, &s->rows[i % s->room], 1);
+  for (size_t i = s->count - n; !status && i < s->count; i++)
+    status = ethd_npy_append(npy, s->rows + (i % s->room) * s->bytes, 1);
   if (!status) status = ethd_npy_flush(npy);
   int reason = ethd__npy_reason(npy);
   ethd_status closed = ethd_npy_close(npy);
@@ -66,14 +67,14 @@ static void write_file(ethd__snapshot *s) {
     strcpy(s->message, ethd_status_sentence(status));
 }
 
-void ethd__snapshot_take(ethd__snapshot *s, const ethd_trace *trace, int begins) {
+void ethd__snapshot_take(ethd__snapshot *s, const void *row, ethd_fault begins) {
   int over = s->fault != ETHD_FAULT_NONE && !s->left;
   if (!s->path || over) return;
-  s->rows[s->count++ % s->room] = *trace;
+  memcpy(s->rows + (s->count++ % s->room) * s->bytes, row, s->bytes);
   if (s->left) {
     if (--s->left == 0) write_file(s);
   } else if (begins) {
-    s->fault = (ethd_fault)trace->fault;
+    s->fault = begins;
     s->left = s->after;
   }
 }

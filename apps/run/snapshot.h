@@ -3,12 +3,14 @@
 #ifndef ETHD__APPS_RUN_SNAPSHOT_H
 #define ETHD__APPS_RUN_SNAPSHOT_H
 
-#include "ethd/control.h"
+#include "ethd/fault.h"
 #include "ethd/record.h"
 
 typedef struct ethd__snapshot {
-  char *path; /* NULL: none is taken */
-  ethd_trace *rows;
+  char *path;                 /* NULL: none is taken */
+  const ethd_column *columns; /* of a row, */
+  size_t bytes;               /* which has so many */
+  char *rows;
   size_t room, count;             /* rows; taken since the start */
   size_t after;                   /* rows that follow the fault */
   size_t left;                    /* ticks still to come; 0 before the fault and after the file is written */
@@ -17,11 +19,12 @@ typedef struct ethd__snapshot {
   char message[ETHD_MESSAGE_MAX]; /* why it couldn't be written, else empty */
 } ethd__snapshot;
 
-/* Without a path nothing is taken. Fails with ETHD_E_MEMORY. */
-ETHD_MUST_CHECK ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double period);
+/* Fails with ETHD_E_MEMORY. Without it nothing is taken. */
+ETHD_MUST_CHECK ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double period,
+                                                const ethd_column *columns, size_t row_bytes);
 
-/* To be called with every row, in order. `begins`: a fault that stops the ring begins at this row. */
-void ethd__snapshot_take(ethd__snapshot *s, const ethd_trace *trace, int begins);
+/* To be called with every row, in order. `begins`: a fault that stops the ring and begins at this row. */
+void ethd__snapshot_take(ethd__snapshot *s, const void *row, ethd_fault begins);
 
 /* Writes the rows that are there, if the run ended before all had come. */
 void ethd__snapshot_finish(ethd__snapshot *s);

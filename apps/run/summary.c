@@ -40,11 +40,7 @@ void ethd__remarks_print(FILE *out, ethd__session *s) {
   int32_t shortfalls = s->is_virtual ? 0 : ethd_loop_shortfalls(s->loop);
   int next = 0;
   for (uint32_t i = 0; (remark = ethd_device_remark(s->device, i)) != NULL; i++) tell(out, remark, &next);
-  if (!s->is_virtual && !ethd__session_sees_finger(s))
-    tell(out,
-         "no sensor measures the finger, so the ring stands still; add a driver, as in driver = servo, ring, or "
-         "reading_x, reading_y and reading_count in the map (step 6)",
-         &next);
+  if (!s->is_virtual && !ethd__session_sees_finger(s)) tell(out, s->front->unseen, &next);
   ethd__shortfalls_print(out, shortfalls);
   if (next && shortfalls & RIGHTS) next = 1;
   if (next)
@@ -69,16 +65,18 @@ static void print_faults(FILE *out, const ethd__recorder *r, const ethd_loop_sta
 /* The counters are the controller's and begin when it is enabled. */
 static void print_skipped(FILE *out, const ethd__session *s, const ethd_loop_stats *stats) {
   ethd_counters c;
-  ethd_control_counters(s->control, &c);
+  s->controller->counters(s->control, &c);
   fprintf(out,
           "%-10s %" PRIu64 " reading%s dropped, %" PRIu64 " contact%s without room, %" PRIu64
           " tick%s without room in the recorder\n",
           "skipped", c.readings_dropped, ethd__s(c.readings_dropped), c.contacts_lost, ethd__s(c.contacts_lost),
           stats->rows_lost, ethd__s(stats->rows_lost));
-  if (!s->setup.scene) fprintf(out, "%-10s none: there is no wall; [scene] file = ... has one\n", "scene");
-  if (!s->setup.scene) return;
+  const ethd_config *config = s->config;
+  if (!config->scene && !config->solids)
+    fprintf(out, "%-10s none: there is no wall; [scene] file = ... has one\n", "scene");
+  if (!config->scene) return;
   fprintf(out, "%-10s queried in %" PRIu64 " of %" PRIu64 " tick%s", "scene", c.queried, c.ticks, ethd__s(c.ticks));
-  ethd__dropped_print(out, s->setup.scene);
+  ethd__dropped_print(out, config->scene);
   fputc('\n', out);
 }
 
@@ -143,7 +141,7 @@ static void print_recorded(FILE *out, const char *record, const ethd__recorder *
 void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) {
   static ethd_loop_stats stats;
   ethd_loop_read(s->loop, &stats);
-  fprintf(out, "%-10s %" PRIu64 " of %g s\n", "ticks", stats.ticks, s->setup.period);
+  fprintf(out, "%-10s %" PRIu64 " of %g s\n", "ticks", stats.ticks, s->period);
   fprintf(out, "%-10s %" PRIu64 ", %" PRIu64 " period%s missed\n", "overruns", stats.overruns, stats.missed,
           ethd__s(stats.missed));
   if (s->is_virtual) {

@@ -108,39 +108,34 @@ static void put_number(telemetry_text *t, double v) {
     put(t, "null");
 }
 
-static void put_one(telemetry_text *t, const char *name, double v) {
-  put(t, ",\"%s\":", name);
-  put_number(t, v);
+static void put_column(telemetry_text *t, const ethd_column *column, const void *trace) {
+  const char *at = (const char *)trace + column->offset;
+  put(t, ",\"%s\":%s", column->name, column->count > 1 ? "[" : "");
+  for (uint32_t i = 0; i < column->count; i++, at += 8) {
+    double number;
+    int64_t integer;
+    memcpy(&number, at, sizeof number);
+    memcpy(&integer, at, sizeof integer);
+    if (i) put(t, ",");
+    if (column->type == 'f')
+      put_number(t, number);
+    else
+      put(t, "%" PRId64, integer);
+  }
+  if (column->count > 1) put(t, "]");
 }
 
-static void put_two(telemetry_text *t, const char *name, const double v[2]) {
-  put(t, ",\"%s\":[", name);
-  put_number(t, v[0]);
-  put(t, ",");
-  put_number(t, v[1]);
-  put(t, "]");
-}
+/* Those of them that the front has. */
+static const char *const sent[] = {"tick", "state",   "fault", "contacts", "missed", "q",   "x",    "v",    "xf", "vf",
+                                   "tau",  "command", "fe",    "fd",       "beta",   "eps", "d_re", "d_fe", "v_n"};
 
-void ethd__telemetry_send(int socket, const ethd_loop_row *row) {
-  const ethd_trace *k = &row->trace;
+void ethd__telemetry_send(int socket, const ethd_column *columns, const ethd__row_head *row) {
   telemetry_text t = {.length = 0};
-  put(&t, "{\"timestamp\":%.9f,\"tick\":%" PRId64, 1e-9 * (double)k->sense.time_ns, k->tick);
-  put(&t, ",\"state\":%d,\"fault\":%d,\"armed\":%d", (int)k->state, (int)k->fault, (int)row->armed);
-  put(&t, ",\"contacts\":%d,\"missed\":%" PRId64, (int)k->contacts, k->sense.missed);
-  put_one(&t, "share", row->share);
-  put_two(&t, "q", k->sense.q);
-  put_two(&t, "x", k->x);
-  put_two(&t, "v", k->v);
-  put_two(&t, "xf", k->xf);
-  put_two(&t, "vf", k->vf);
-  put_two(&t, "tau", k->tau);
-  put_two(&t, "fe", k->fe);
-  put_two(&t, "fd", k->fd);
-  put_one(&t, "beta", k->beta);
-  put_one(&t, "eps", k->eps);
-  put_one(&t, "d_re", k->d_re);
-  put_one(&t, "d_fe", k->d_fe);
-  put_one(&t, "v_n", k->v_n);
+  put(&t, "{\"timestamp\":%.9f,\"armed\":%d,\"share\":", 1e-9 * (double)row->time_ns, (int)row->armed);
+  put_number(&t, row->share);
+  for (size_t i = 0; i < sizeof sent / sizeof *sent; i++)
+    for (const ethd_column *c = columns; c->name; c++)
+      if (!strcmp(c->name, sent[i])) put_column(&t, c, row->trace);
   put(&t, "}");
   (void)!send(socket, t.at, t.length, MSG_DONTWAIT | MSG_NOSIGNAL);
 }

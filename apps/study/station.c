@@ -54,7 +54,8 @@ static void add(ethd__station *s, const ethd_loop_row *row) {
   if (rows->count++ >= s->last || row->trace.fault) s->phase = ETHD_PHASE_OVER;
 }
 
-static void take(void *self, const ethd_loop_row *row) {
+static void take(void *self, const ethd__row *any) {
+  const ethd_loop_row *row = &any->plane;
   ethd__station *s = self;
   pthread_mutex_lock(&s->lock);
   bool waits = s->phase == ETHD_PHASE_DUE || s->phase == ETHD_PHASE_TAP;
@@ -80,7 +81,7 @@ static ethd__phase phase_of(ethd__station *s) {
 
 /* ---- the loop ---- */
 
-static ethd_loop_row latest(ethd__station *s) { return ethd__recorder_latest(&s->session.recorder); }
+static ethd_loop_row latest(ethd__station *s) { return ethd__recorder_latest(&s->session.recorder).plane; }
 
 static const char *stopped(void *self) {
   int64_t fault = latest(self).trace.fault;
@@ -101,9 +102,9 @@ static void pass(ethd__station *s) {
 /* When this returns, the strategy is active. */
 static ethd_status take_strategy(ethd__station *s, const char *law, char *message) {
   ethd__session *session = &s->session;
-  ethd_setup setup = session->setup;
-  if (!strcmp(setup.transition->law.id, law)) return ETHD_OK;
-  ethd_status status = ethd_config_transition(session->config, law, &setup, message);
+  ethd__setup_copy setup = session->setup;
+  if (!strcmp(setup.plane.transition->law.id, law)) return ETHD_OK;
+  ethd_status status = ethd_config_transition(session->config, law, &setup.plane, message);
   return status ? status : ethd__session_post(session, &setup, "transition", law, message);
 }
 
@@ -111,7 +112,7 @@ static void make_ready(ethd__station *s, const ethd__taken *taken) {
   s->stage.study = &s->desk->study;
   s->stage.law = taken->stage->law;
   s->turn = taken->turn;
-  s->stage.setup = s->session.setup;
+  s->stage.setup = s->session.setup.plane;
   s->rule = ethd__stage_rule(&s->stage, taken->speed, s->stage.setup.finger_radius);
   s->rule.carried = true;
   s->status = ETHD_OK;
@@ -185,9 +186,9 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
 /* Somebody has seen to the fault; if it is still there, it stops the device again. */
 static ethd_status acknowledge(void *self, char message[ETHD_MESSAGE_MAX]) {
   ethd__station *s = self;
-  double until = ethd__session_time(&s->session) + CLEAN;
-  while (ethd_control_clean_time(s->session.control) < s->session.setup.limits.clean_time &&
-         ethd__session_time(&s->session) < until && !ethd__stop)
+  double until = ethd__session_time(&s->session) + CLEAN, needed;
+  while (ethd__session_clean_time(&s->session, &needed) < needed && ethd__session_time(&s->session) < until &&
+         !ethd__stop)
     pass(s);
   if (!ethd__session_acknowledge(&s->session)) return ETHD_OK;
   ethd_status status = ethd__session_enable(&s->session);
