@@ -40,6 +40,7 @@ END
 # trial FAULT SENTENCE MOST: once more where the machine held the peer or the loop up
 trial() {
   for attempt in 1 2 3 4; do
+    : >"$folder/peer"
     "$PYTHON" tests/peers/arm_peer.py $port $port $1 4 >"$folder/peer" 2>&1 &
     peer=$!
     for wait in $(seq 100); do grep -q ready "$folder/peer" && break || sleep 0.2; done
@@ -48,7 +49,7 @@ trial() {
     kept "$2" $3 && { echo "$1: $(tail -n 1 "$folder/peer")"; return; }
     late=$(sed -n 's/.*"late": \([^,]*\),.*/\1/p' "$folder/peer")
     grep -qE "ticks are late|thread doesn't run|feedback is too old|finger wasn't seen" "$folder/said" ||
-      awk "BEGIN { exit !($late > 0.002) }" || { fail "$1: $(tail -n 3 "$folder/said" "$folder/peer")"; return; }
+      awk "BEGIN { exit !(${late:-0} > 0.002) }" || { fail "$1: $(tail -n 3 "$folder/said" "$folder/peer")"; return; }
   done
   echo "SKIP: the machine is too busy for a loop at 500 Hz"
   exit 77
@@ -62,6 +63,7 @@ trial protective 'disarmed, the drive reports a fault' 0.1
 trial disconnect 'disarmed, the link to the servo is lost' 0.1
 
 # ethd-run drives it, too; the recording knows the camera's limit of a reading's age, and replays
+: >"$folder/peer"
 "$PYTHON" tests/peers/arm_peer.py $port $port none 4 >"$folder/peer" 2>&1 &
 peer=$!
 for wait in $(seq 100); do grep -q ready "$folder/peer" && break || sleep 0.2; done
