@@ -22,6 +22,11 @@ for speed in low high; do
   plot "in='traces'; speed='$speed'; out='beside-$speed.png'; plant='$plant'" taps.gp
 done
 
+# An arm in space, and what its taps depend on.
+"$BUILD/bin/ethd-tap" --arm ur5e --taps 40 --transition smooth,approach --trace "$out/arm" --force --plot "$out/sensitivity.png" >"$out/arm.txt"
+cat "$out/arm.txt"
+plot "in='arm/approach-0.4.csv'; out='arm.png'" arm.gp
+
 # The paper's study as it was done, with three people; and a crowd of 400 beside it.
 rm -rf "$out/study" "$out/crowd"
 "$BUILD/bin/ethd-study" --quiet --out "$out/study" >/dev/null
@@ -32,6 +37,7 @@ rm -rf "$out/study" "$out/crowd"
 echo "pictures, in the manner of the paper's figures:"
 echo "  $out/smooth-low.png, offset-low.png, smooth-high.png, offset-high.png: figures 9 to 12, and abrupt-, predictive-"
 echo "  $out/beside-low.png, beside-high.png: smooth, offset and predictive beside each other"
+echo "  $out/arm.png, sensitivity.png: a plate on a simulated UR5e, and early touches against delay, gap and bias"
 echo "  $out/study/report/boxes.png, beside-boxes.png: figures 14 to 17, of 3 people and of 400; encounter.png: figure 6"
 echo "and the figures behind them: $out/taps.csv, $out/traces/"
 echo

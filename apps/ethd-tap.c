@@ -1,4 +1,4 @@
-/* The tapping study on the simulated device. */
+/* The tapping study on the simulated device, or with a simulated arm in space. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +8,7 @@
 #include "tap/load.h"
 #include "tap/options.h"
 #include "tap/paper.h"
+#include "tap/reach_main.h"
 #include "tap/run.h"
 #include "tap/table.h"
 #include "text/claim.h"
@@ -29,17 +30,6 @@ static void check_job(ethd_status status, const char *message) {
 static const char *base_name(const char *path) {
   const char *slash = strrchr(path, '/');
   return slash ? slash + 1 : path;
-}
-
-static ethd__speed *load_speeds(const ethd_plant *plant) {
-  char quote[ETHD_QUOTE_MAX];
-  ethd__speed *speeds = calloc(arg.speeds.count, sizeof *speeds);
-  if (!speeds) ethd__fail_memory();
-  for (size_t i = 0; i < arg.speeds.count; i++)
-    if (!ethd__speed_parse(arg.speeds.words[i], plant, &speeds[i]))
-      ethd__fail(ETHD_EXIT_INPUT, "--speed: found %s; low, high and numbers from 0.01 to 2 are allowed",
-                 ethd__quote(arg.speeds.words[i], strlen(arg.speeds.words[i]), quote));
-  return speeds;
 }
 
 /* ---- the study ---- */
@@ -104,11 +94,19 @@ int main(int argc, char **argv) {
   ethd__study study = {0};
   ethd__begin();
   ethd__tap_options_read(argc, argv, &arg);
+  if (arg.arm) {
+    ethd__tap_laws_choose(&arg, NULL);
+    const int done = ethd__reach_main(&arg);
+    ethd__tap_options_free(&arg);
+    return ethd__end(done);
+  }
   ethd__load(arg.config, arg.plant, true, true, &loaded);
   ethd__tap_laws_choose(&arg, loaded.config->setup.transition->law.id);
   study.config = loaded.config;
   study.plant = loaded.plant;
-  study.speeds = load_speeds(&study.plant);
+  study.speeds = calloc(arg.speeds.count, sizeof *study.speeds);
+  if (!study.speeds) ethd__fail_memory();
+  ethd__speeds_read(&arg.speeds, &study.plant, study.speeds);
   study.speed_count = arg.speeds.count;
   study.seed = arg.seed;
   study.validity = arg.validity;

@@ -59,14 +59,22 @@ END
 fi
 [ "$(wc -l <README.md)" -lt 150 ] || fail "$(wc -l <README.md) lines: fewer than 150 are read"
 
-# The picture: of this script and these ticks, which are the same everywhere; its pixels depend on gnuplot and its fonts.
-drawn=42a6338649e1bebc194926756e0336404236a2839d28dd79638cd85aaecf8729
-"$BUILD/bin/ethd-tap" --taps 400 --transition smooth,offset,predictive --speed high --trace "$work/traces" >/dev/null
-[ "$(cat apps/plot/taps.gp "$work"/traces/*.csv apps/plot/taps.png | sha256sum)" = "$drawn  -" ] ||
+# The pictures: of these scripts and these ticks, which are the same everywhere; their pixels depend on gnuplot and its fonts.
+taps=42a6338649e1bebc194926756e0336404236a2839d28dd79638cd85aaecf8729
+arm=aca1bd1a74db7f14b6cd773a2abeee427165fe24f8878210fbee3b577ecf740c
+"$BUILD/bin/ethd-tap" --taps 400 --transition smooth,offset,predictive --speed high --trace "$work/taps" >/dev/null
+"$BUILD/bin/ethd-tap" --arm ur5e --transition approach --trace "$work/arm" >/dev/null
+drawn() { [ "$(cat apps/plot/$1.gp "$work/$1"/*.csv apps/plot/$1.png | sha256sum)" = "$2  -" ]; }
+drawn taps $taps ||
   fail "the picture isn't what is drawn today. Look at a new one, and give its sum here:
   build/bin/ethd-tap --taps 400 --transition smooth,offset,predictive --speed high --trace traces
   gnuplot -e \"in='traces'; out='apps/plot/taps.png'; scale=0.7\" apps/plot/taps.gp
   cat apps/plot/taps.gp traces/*.csv apps/plot/taps.png | sha256sum"
+drawn arm $arm ||
+  fail "the arm's picture isn't what is drawn today. Look at a new one, and give its sum here:
+  build/bin/ethd-tap --arm ur5e --transition approach --trace traces
+  gnuplot -e \"in='traces/approach-0.4.csv'; out='apps/plot/arm.png'; scale=0.7\" apps/plot/arm.gp
+  cat apps/plot/arm.gp traces/*.csv apps/plot/arm.png | sha256sum"
 
 for n in 1 2; do echo "block $n: $(wc -l <"$work/$n.c") lines"; done
 cat "$work/app.out" | head -n 5

@@ -35,7 +35,7 @@ grep -q '^True$' "$folder"/*.python.out || fail "the first torque isn't the reco
 grep -q '^[1-9][0-9]* ticks in C and in Python: True$' "$folder"/*.python.out || fail "a law in C and in Python differ: $(cat "$folder"/*.python.out)"
 grep -q '^P01 smooth [1-9].* N at most$' "$folder"/*.python.out || fail "no tap of the study: $(cat "$folder"/*.python.out)"
 [ -s study/report/report.html ] && [ -s swapped.csv ] && [ "$(wc -l <out.csv)" = 301 ] || fail "files are missing: $(ls)"
-[ "$(cat "$tree"/apps/plot/taps.png | wc -c)" -lt 100000 ] || fail "README's picture is over 100 kB"
+for picture in taps arm; do [ "$(cat "$tree/apps/plot/$picture.png" | wc -c)" -lt 100000 ] || fail "README's picture $picture.png is over 100 kB"; done
 for link in $(grep -ohE '\]\([a-z][^):]*\)' "$tree/README.md" | tr -d '()]'); do [ -e "$tree/$link" ] || fail "README.md: $link isn't there"; done
 for link in $(grep -ohE '\]\([a-z][^):]*\)' "$tree/apps/README.md" | tr -d '()]'); do [ -e "$tree/apps/$link" ] || fail "apps/README.md: $link isn't there"; done
 echo "$count blocks"

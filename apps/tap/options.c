@@ -1,5 +1,6 @@
 #include "tap/options.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,12 +37,21 @@ static const char doc[] =
     "  v_hand   speed of the hand where a finger touches the wall\n"
     "  depth    depth of the ring in the wall at the touch\n"
     "  felt     eps 60 ms after the touch; 0 if the law never moves the wall\n\n"
+    "--arm taps with a simulated robot arm in space, which takes velocities, instead of the paper's device: a plate on "
+    "its flange goes before the finger by --gap and is to stand at a flat wall when the finger comes. A headset sees "
+    "the finger 30 ms late, with a noise of 1 mm. A tap is valid if the finger, at the given speed (default 0.4 m/s), "
+    "touches the plate no more than 1 mm before the wall; a touch before that is early. Felt offset is the plate's "
+    "place behind the wall at the touch. TABLE is ur5e, fr3, iiwa7 or a file; --finger may name a folder of "
+    "recordings, and their column z_m, if there is one, is used too. predictive needs the mass of a device, and "
+    "without one does what offset does.\n\n"
     "Examples:\n"
     "  ethd-tap\n"
     "  ethd-tap --taps 400 --csv taps.csv --trace traces\n"
     "  ethd-tap --finger motion/avraham_free_mit/avraham_ND_s02_be38_free.csv\n"
     "  ethd-tap --config mine.ini --transition mine,offset --record taps\n"
     "  ethd-tap --paper --plant q\n"
+    "  ethd-tap --arm ur5e --delay 0.03 --plot sensitivity.png\n"
+    "  ethd-tap --arm ur5e --finger motion/avraham_free_mit\n"
     "Eight recorded movements are installed in the folder motion; a FILE.csv that doesn't exist here is searched "
     "there.";
 
@@ -63,11 +73,13 @@ static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "the controller's configuration (default: the plant's own)", 0},
     {"transition", 't', "LAW[,LAW..]", 0,
      "transition laws, also of the configuration's plugins (default: abrupt,smooth,offset,predictive and the "
-     "configuration's own)",
+     "configuration's own; with --arm abrupt,smooth,offset,approach)",
      0},
-    {"speed", 's', "low|high|V[,..]", 0, "speeds: low,high; V in m/s, 0.01 to 2", 0},
+    {"speed", 's', "low|high|V[,..]", 0, "speeds: low,high; V in m/s, 0.01 to 2 (with --arm 0.4)", 0},
     {"taps", 'n', "N", 0,
-     "attempts for each law and speed (100; 10 with --finger; with --paper 400, twice as many at high speed)", 0},
+     "attempts for each law and speed (100; 10 with --finger, and with --arm one for each recording, at least 10; with "
+     "--paper 400, twice as many at high speed)",
+     0},
     {"seed", 'r', "S", 0, "seed of every random number (1)", 0},
     {"plant", 'p', "q|n|b|p|FILE", 0,
      "the simulated device and finger (default: that of --config, else q); FILE.ini stands beside FILE.plant", 0},
@@ -82,7 +94,9 @@ static const struct argp_option options[] = {
      0},
     {"learn", OPTION_LEARN, "K", 0, "taps before each counted tap, from which a law can learn (0)", 0},
     {"set", OPTION_SET, "KEY=VALUE", 0,
-     "change a section.key of the configuration or of the law's device data (arm.mass_x); may be given more than once",
+     "change a section.key of the configuration or of the law's device data (arm.mass_x), with --arm one of [space] "
+     "and of "
+     "the laws; may be given more than once",
      0},
     {"csv", OPTION_CSV, "OUT.csv", 0, "write a row for each tap", 0},
     {"record", OPTION_RECORD, "DIR", 0,
@@ -97,7 +111,7 @@ static const struct argp_option options[] = {
     {0},
 };
 
-static ethd__tap_options arg = {.scale = 1, .seed = 1};
+static ethd__tap_options arg = {.scale = 1, .seed = 1, .delay = NAN, .gap = 0.06, .rate = 72};
 static ethd__tap_words columns, units; /* of the recorded movement */
 
 typedef struct named {
@@ -172,6 +186,7 @@ static void add_gain(char *text) {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
+  case ARGP_KEY_INIT: state->child_inputs[0] = &arg; return 0;
   case 'c': arg.config = text; return 0;
   case 't': set_list(&arg.laws, "--transition", text); return 0;
   case 's': set_list(&arg.speeds, "--speed", text); return 0;
@@ -207,10 +222,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 void ethd__tap_options_read(int argc, char **argv, ethd__tap_options *out) {
-  static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
+  static const struct argp_child arm[] = {{&ethd__reach_argp, 0, "With an arm in space:", 1}, {NULL, 0, NULL, 0}};
+  static const struct argp argp = {options, parse, NULL, doc, arm, NULL, NULL};
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
-  if (!arg.speeds.count) set_list(&arg.speeds, "--speed", "low,high");
-  if (!arg.taps) arg.taps = arg.paper ? TAPS_PAPER : arg.finger ? TAPS_FINGER : TAPS;
+  if (!arg.speeds.count) set_list(&arg.speeds, "--speed", arg.arm ? "0.4" : "low,high");
+  if (!arg.taps && !(arg.arm && arg.finger)) arg.taps = arg.paper ? TAPS_PAPER : arg.finger ? TAPS_FINGER : TAPS;
   *out = arg;
 }
 
@@ -221,9 +237,21 @@ void ethd__tap_options_free(ethd__tap_options *o) {
   drop(&units);
 }
 
+void ethd__speeds_read(const ethd__tap_words *words, const ethd_plant *plant, ethd__speed *out) {
+  char quote[ETHD_QUOTE_MAX];
+  for (size_t i = 0; i < words->count; i++)
+    if (!ethd__speed_parse(words->words[i], plant, &out[i]))
+      ethd__fail(ETHD_EXIT_INPUT, "--speed: found %s; low, high and numbers from 0.01 to 2 are allowed",
+                 ethd__quote(words->words[i], strlen(words->words[i]), quote));
+}
+
 void ethd__tap_laws_choose(ethd__tap_options *o, const char *own) {
   named to = {&o->laws, "--transition"};
   if (o->laws.count) return;
+  if (!own) {
+    set_list(&o->laws, to.option, "abrupt,smooth,offset,approach");
+    return;
+  }
   set_list(&o->laws, to.option, "abrupt,smooth,offset,predictive");
   for (size_t i = 0; i < o->laws.count; i++)
     if (!strcmp(o->laws.words[i], own)) return;

@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "cli/cli.h"
 #include "tap/study.h"
 
 #define ETHD_TAP_WORDS 32
@@ -27,13 +28,24 @@ typedef struct ethd__tap_options {
   uint32_t learn;
   ethd__gain gains[ETHD_TAP_GAINS];
   size_t gain_count;
+  /* with an arm */
+  const char *arm, *plot;        /* NULL: not given */
+  double delay, gap, bias, rate; /* s, NaN: the table's; m; m; Hz */
+  double wall[4];                /* normal and distance; all 0: not given */
 } ethd__tap_options;
 
 /* Reads the command line. Prints --help, or one line and exits 2. */
 void ethd__tap_options_read(int argc, char **argv, ethd__tap_options *out);
 void ethd__tap_options_free(ethd__tap_options *options);
 
-/* If no law is asked for, chooses all of this library and the configuration's own. */
+/* Of the options with an arm; its input is an ethd__tap_options. */
+extern const struct argp ethd__reach_argp;
+
+/* Reads the words of --speed; exits 2 on another word. */
+void ethd__speeds_read(const ethd__tap_words *words, const ethd_plant *plant, ethd__speed *out);
+
+/* If no law is asked for, chooses all of this library and the configuration's own; with an arm, where own is NULL, all
+   that work under velocity commands. */
 void ethd__tap_laws_choose(ethd__tap_options *options, const char *own);
 
 #endif

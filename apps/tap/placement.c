@@ -1,10 +1,16 @@
 #include "tap/placement.h"
 
+#include <dirent.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "text/csv.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 /* ---- reading ---- */
@@ -193,4 +199,47 @@ size_t ethd__movement_place(const ethd__movement *movement, const ethd__touchdow
     }
   }
   return count;
+}
+
+/* ---- files ---- */
+
+static int is_csv(const struct dirent *entry) {
+  size_t n = strlen(entry->d_name);
+  return n > 4 && entry->d_name[0] != '.' && !strcmp(entry->d_name + n - 4, ".csv");
+}
+
+ethd_status ethd__movements_in(const char *folder, char ***files, size_t *count, char message[ETHD_MESSAGE_MAX]) {
+  struct dirent **entries = NULL;
+  *count = 0;
+  int fd = ethd__file_open(folder, O_RDONLY | O_DIRECTORY, 0);
+  int n = fd < 0 ? -1 : scandirat(fd, ".", &entries, is_csv, alphasort);
+  bool failed = n < 0;
+  if (fd >= 0) close(fd);
+  *files = calloc(n > 0 ? (size_t)n : 1, sizeof **files);
+  for (int i = 0; i < n; i++) {
+    char *path = *files ? ethd__path_join(folder, entries[i]->d_name) : NULL;
+    if (path) (*files)[(*count)++] = path;
+    failed |= !path;
+    free(entries[i]);
+  }
+  free(entries);
+  if (!failed && n > 0) return ETHD_OK;
+  return ethd__say(message, ETHD_E_FILE,
+                   "%s: no folder with recorded movements (*.csv); ETHD_MOTION_DIR may name the one it is in", folder);
+}
+
+ethd_status ethd__movements_list(const char *path, char ***files, size_t *count, char message[ETHD_MESSAGE_MAX]) {
+  struct stat what;
+  *count = 0;
+  *files = NULL;
+  if (!ethd__file_look(path, &what) && S_ISDIR(what.st_mode)) return ethd__movements_in(path, files, count, message);
+  *files = calloc(1, sizeof **files);
+  char *copy = *files ? strdup(path) : NULL;
+  if (copy) (*files)[(*count)++] = copy;
+  return copy ? ETHD_OK : ethd__no_memory(message, path);
+}
+
+void ethd__movements_free(char **files, size_t count) {
+  for (size_t i = 0; i < count; i++) free(files[i]);
+  free(files);
 }

@@ -62,4 +62,13 @@ void ethd__movement_touchdown(const ethd__movement *movement, double speed, ethd
 size_t ethd__movement_place(const ethd__movement *movement, const ethd__touchdown *touchdown, ethd_vec centre,
                             const ethd_arm *arm, ethd_path_sample *out);
 
+/* Lists the file alone, or every *.csv of a folder by name; ethd__movements_free frees the list. */
+ETHD_MUST_CHECK ethd_status ethd__movements_list(const char *path, char ***files, size_t *count,
+                                                 char message[ETHD_MESSAGE_MAX]);
+
+/* Lists those of a folder, and refuses what is none. */
+ETHD_MUST_CHECK ethd_status ethd__movements_in(const char *folder, char ***files, size_t *count,
+                                               char message[ETHD_MESSAGE_MAX]);
+void ethd__movements_free(char **files, size_t count);
+
 #endif
