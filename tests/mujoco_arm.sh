@@ -77,6 +77,13 @@ $by_velocity"
 reaches torque 2.5 65 "mujoco_arm.delay = 0.002
 $by_torque"
 
+# ---- it keeps the contract of a device in space ----
+for how in velocity torque; do
+  sed -i 's/, hand$//' "$folder/$how.ini"
+  "$BUILD/bin/ethd-conform" --config "$folder/$how.ini" --virtual --move >"$folder/out" 2>&1
+  [ "$(grep ' kept ' "$folder/out" | grep -vc '^calls')" = 6 ] || fail "$how: $(cat "$folder/out")"
+done
+
 # a model that isn't there, and one that doesn't suit
 for model in none.xml bare.xml; do
   echo '<mujoco/>' >"$folder/bare.xml"

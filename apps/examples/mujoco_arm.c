@@ -16,7 +16,7 @@ enum { ROWS = 6, JOINTS = ETHD_JOINTS_MAX, PAST = 256 };
 #define DAMPED 0.02     /* m: damping of the inverse (Nakamura and Hanafusa 1986) */
 #define SERVO 80        /* rad/s: frequency of the servo's error, critically damped */
 #define TURN 5          /* 1/s, of the plate to the normal that it is told, at most 1 rad/s */
-#define STIFF 5         /* Nms: where forces are commanded, torque over the turn that the plate lacks */
+#define SPIN 30         /* 1/s: forces: how quickly the plate takes that turn */
 
 typedef struct mujoco_arm {
   mjModel *model;
@@ -66,13 +66,17 @@ static void move_joints(mujoco_arm *a, const double *before, double *dq) {
   mju_sub3(a->v, x, was), mju_scl3(a->v, a->v, 1 / a->period);
 }
 
-/* Works out joint torques, gravity's not among them: the force's, and of what the plate lacks in turn. */
+/* Works out joint torques without gravity's: the point goes as a force moves a free arm, while the plate turns. */
 static void push_joints(const mujoco_arm *a, double *torque) {
-  double task[ROWS], j[ROWS][JOINTS];
+  double task[ROWS], j[ROWS][JOINTS], rise[JOINTS];
   look(a, a->real, j, task);
-  for (int i = 3; i < ROWS; i++) task[i] = STIFF / LEVER / LEVER * (task[i] - mju_dot(j[i], a->real->qvel, a->n));
   mju_zero(torque, a->n);
-  for (int i = 0; i < ROWS; i++) mju_addToScl(torque, j[i], task[i], a->n);
+  for (int i = 0; i < 3; i++) mju_addToScl(torque, j[i], task[i], a->n);
+  mj_solveM(a->model, a->real, rise, torque, 1);
+  for (int i = a->held.safe ? 0 : 3; i < ROWS; i++) task[i] = SPIN * (task[i] - mju_dot(j[i], a->real->qvel, a->n));
+  for (int i = 0; i < 3 && !a->held.safe; i++) task[i] = mju_dot(j[i], rise, a->n);
+  inverse(a, j, task, rise);
+  mj_mulM(a->model, a->real, torque, rise);
 }
 
 /* Moves the plant by a period: by torques, or so that the joints' speeds rise to those that they were told. */
@@ -85,8 +89,7 @@ static void pass(mujoco_arm *a, const double *told) {
     mj_step1(a->model, d);
     for (int k = 0; k < a->n; k++) {
       wanted[k] = rise[k] + SERVO * (2 * (a->servo_v[k] - d->qvel[k]) + SERVO * (a->servo_q[k] - d->qpos[k]));
-      a->servo_q[k] += step * (a->servo_v[k] + step / 2 * rise[k]);
-      a->servo_v[k] += step * rise[k];
+      a->servo_q[k] += step * (a->servo_v[k] + step / 2 * rise[k]), a->servo_v[k] += step * rise[k];
     }
     mj_mulM(a->model, d, torque, wanted);
     mju_add(d->ctrl, d->qfrc_bias, a->force ? told : torque, a->n);
@@ -96,9 +99,7 @@ static void pass(mujoco_arm *a, const double *told) {
 
 static ethd_status start(void *device) {
   mujoco_arm *a = device;
-  mj_resetDataKeyframe(a->model, a->real, 0);
-  mj_forward(a->model, a->real);
-  mj_copyData(a->told, a->model, a->real);
+  mj_resetDataKeyframe(a->model, a->real, 0), mj_forward(a->model, a->real), mj_copyData(a->told, a->model, a->real);
   mju_zero(a->past[0], PAST * JOINTS), mju_zero(a->servo_v, JOINTS), mju_zero3(a->v);
   mju_copy(a->servo_q, a->real->qpos, a->n);
   return a->tick = a->safe = 0, ETHD_OK;
@@ -130,8 +131,7 @@ static ethd_ability able(const void *device, const double n[3]) ETHD_RT {
   const mujoco_arm *a = device;
   double j[ROWS][JOINTS], task[ROWS], dq[JOINTS], torque[JOINTS] = {0}, rise[JOINTS], fast = (double)INFINITY;
   ethd_ability can = ethd_ability_unknown();
-  look(a, a->force ? a->real : a->told, j, task);
-  mju_zero(task, ROWS), mju_copy3(task, n);
+  look(a, a->force ? a->real : a->told, j, task), mju_zero(task, ROWS), mju_copy3(task, n);
   inverse(a, j, task, dq);
   for (int k = 0; k < a->n; k++) fast = fmin(fast, 1 / fabs(dq[k]));
   for (int i = 0; i < 3; i++) mju_addToScl(torque, j[i], n[i], a->n);
