@@ -52,8 +52,10 @@ static ethd_status reopen(ethd__finger_bus *b, int64_t now_ns) {
 }
 
 /* On a virtual clock nothing waits, and bytes that are there count as arrived now. */
-ethd_status ethd__finger_bus_service(ethd__finger_bus *b, int64_t now_ns) {
+ethd_status ethd__finger_bus_service(void *device, uint32_t unit, int64_t now_ns) {
+  ethd__finger_bus *b = device;
   uint8_t bytes[ROOM];
+  (void)unit;
   if (b->port.fd < 0) {
     ethd_status status = reopen(b, now_ns);
     if (status) return status;
@@ -105,13 +107,27 @@ ethd_status ethd__finger_bus_open(ethd__finger_bus *b, char message[ETHD_MESSAGE
   return status ? status : listen_first(b, message);
 }
 
-void ethd__finger_bus_close(ethd__finger_bus *b) {
+void ethd__finger_bus_close(void *device) {
+  ethd__finger_bus *b = device;
   ethd__ring_port_close(&b->port);
   ethd__inbox_close(&b->inbox);
   free(b->port.path);
+  free(b);
 }
 
-ethd_limits ethd__finger_bus_limits(const ethd__finger_bus *b) {
+ethd_status ethd__finger_bus_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
+  ethd__inbox_read(&((ethd__finger_bus *)device)->inbox, now_ns, out);
+  return ETHD_OK;
+}
+
+uint32_t ethd__finger_bus_units(const void *device) { return (void)device, 1; }
+
+uint32_t ethd__finger_bus_figures(const void *device, ethd_figure *out, uint32_t max) {
+  return ethd__inbox_figures(&((ethd__finger_bus *)device)->inbox, out, max);
+}
+
+ethd_limits ethd__finger_bus_limits(const void *device) {
+  const ethd__finger_bus *b = device;
   ethd_limits limits = ethd_limits_device();
   ethd__finger_limits(ETHD__FRAME_RATE, b->clock.delay, &limits);
   limits.gap = (double)INFINITY;

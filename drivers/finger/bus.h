@@ -36,12 +36,14 @@ ETHD_MUST_CHECK ethd_status ethd__finger_bus_prepare(ethd__finger_bus *bus, cons
 
 /* Opens the port of a prepared bus and waits for its first frames. [main] */
 ETHD_MUST_CHECK ethd_status ethd__finger_bus_open(ethd__finger_bus *bus, char message[ETHD_MESSAGE_MAX]);
-void ethd__finger_bus_close(ethd__finger_bus *bus);
 
-/* Does a driver's service. */
-ethd_status ethd__finger_bus_service(ethd__finger_bus *bus, int64_t now_ns);
-
-/* Returns such a driver's limits, which bound the finger's readings only, since it takes no samples of the joints. */
-ethd_limits ethd__finger_bus_limits(const ethd__finger_bus *bus);
+/* Members of such drivers' tables, whose devices are allocated and begin with the bus. close frees the device; the
+   limits bound the finger's readings only, since the bus takes no samples of the joints. */
+ethd_status ethd__finger_bus_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
+uint32_t ethd__finger_bus_units(const void *device);
+ethd_status ethd__finger_bus_service(void *device, uint32_t unit, int64_t now_ns);
+void ethd__finger_bus_close(void *device);
+ethd_limits ethd__finger_bus_limits(const void *device);
+uint32_t ethd__finger_bus_figures(const void *device, ethd_figure *out, uint32_t max);
 
 #endif

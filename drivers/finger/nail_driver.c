@@ -25,7 +25,7 @@ static const ethd_param params[PARAMS] = {
 static const char *const keys[] = {[PORT] = "port", [CALIBRATION] = "calibration", [KEYS] = NULL};
 
 typedef struct nail_plate {
-  ethd__finger_bus bus;
+  ethd__finger_bus bus; /* first, as its functions ask */
   ethd__nail nail;
   ethd__sensor sensor;
   uint32_t index;
@@ -94,34 +94,12 @@ static ethd_status nail_prepare(const ethd_device_def *def, void **device, char 
 
 static ethd_status nail_open(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = nail_prepare(def, device, message);
-  return status ? status : ethd__finger_bus_open(&((nail_plate *)*device)->bus, message);
-}
-
-static ethd_status nail_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
-  ethd__inbox_read(&((nail_plate *)device)->bus.inbox, now_ns, out);
-  return ETHD_OK;
-}
-
-static uint32_t units(const void *device) { return (void)device, 1; }
-
-static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
-  return (void)unit, ethd__finger_bus_service(&((nail_plate *)device)->bus, now_ns);
-}
-
-static ethd_limits limits(const void *device) { return ethd__finger_bus_limits(&((const nail_plate *)device)->bus); }
-
-static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
-  return ethd__inbox_figures(&((nail_plate *)device)->bus.inbox, out, max);
+  return status ? status : ethd__finger_bus_open(*device, message);
 }
 
 static const char *remark(const void *device, uint32_t i) {
   (void)device;
   return i ? NULL : "the nail's plate measures one direction; across it the ring may touch the finger";
-}
-
-static void nail_close(void *device) {
-  ethd__finger_bus_close(&((nail_plate *)device)->bus);
-  free(device);
 }
 
 const ethd_driver ethd_driver_nail = {
@@ -133,12 +111,12 @@ const ethd_driver ethd_driver_nail = {
     .param_count = PARAMS,
     .keys = keys,
     .open = nail_open,
-    .read = nail_read,
-    .units = units,
-    .service = service,
-    .close = nail_close,
-    .limits = limits,
-    .figures = figures,
+    .read = ethd__finger_bus_read,
+    .units = ethd__finger_bus_units,
+    .service = ethd__finger_bus_service,
+    .close = ethd__finger_bus_close,
+    .limits = ethd__finger_bus_limits,
+    .figures = ethd__finger_bus_figures,
     .remark = remark,
     .joints = ethd__no_joints,
     .prepare = nail_prepare,

@@ -21,7 +21,7 @@ static const ethd_param params[PARAMS] = {
 static const char *const keys[] = {"port", NULL};
 
 typedef struct zones_ring {
-  ethd__finger_bus bus;
+  ethd__finger_bus bus; /* first, as its functions ask */
   ethd__zones zones;
   double level;
 } zones_ring;
@@ -62,29 +62,7 @@ static ethd_status zones_prepare(const ethd_device_def *def, void **device, char
 
 static ethd_status zones_open(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = zones_prepare(def, device, message);
-  return status ? status : ethd__finger_bus_open(&((zones_ring *)*device)->bus, message);
-}
-
-static ethd_status zones_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
-  ethd__inbox_read(&((zones_ring *)device)->bus.inbox, now_ns, out);
-  return ETHD_OK;
-}
-
-static uint32_t units(const void *device) { return (void)device, 1; }
-
-static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
-  return (void)unit, ethd__finger_bus_service(&((zones_ring *)device)->bus, now_ns);
-}
-
-static ethd_limits limits(const void *device) { return ethd__finger_bus_limits(&((const zones_ring *)device)->bus); }
-
-static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
-  return ethd__inbox_figures(&((zones_ring *)device)->bus.inbox, out, max);
-}
-
-static void zones_close(void *device) {
-  ethd__finger_bus_close(&((zones_ring *)device)->bus);
-  free(device);
+  return status ? status : ethd__finger_bus_open(*device, message);
 }
 
 const ethd_driver ethd_driver_zones = {
@@ -96,12 +74,12 @@ const ethd_driver ethd_driver_zones = {
     .param_count = PARAMS,
     .keys = keys,
     .open = zones_open,
-    .read = zones_read,
-    .units = units,
-    .service = service,
-    .close = zones_close,
-    .limits = limits,
-    .figures = figures,
+    .read = ethd__finger_bus_read,
+    .units = ethd__finger_bus_units,
+    .service = ethd__finger_bus_service,
+    .close = ethd__finger_bus_close,
+    .limits = ethd__finger_bus_limits,
+    .figures = ethd__finger_bus_figures,
     .joints = ethd__no_joints,
     .prepare = zones_prepare,
 };

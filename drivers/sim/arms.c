@@ -28,15 +28,6 @@ typedef struct troop {
   workings of[ETHD__ARMS];
 } troop;
 
-static const double INVERSE[ETHD__ARMS_TERMS + 1] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,
-                                                     1.0 / 6,  1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11,
-                                                     1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16};
-
-/* Converts the links' absolute angles, or their derivatives, to the joints'. */
-static inline ethd__two joint(bool serial, ethd__two link) {
-  return serial ? (ethd__two){link[0], link[1] - link[0]} : link;
-}
-
 /* ---- accelerations ---- */
 
 ETHD__INLINE ethd__two rub(const ethd__arms_body *b, workings *w, int k) {
@@ -48,7 +39,7 @@ ETHD__INLINE ethd__two rub(const ethd__arms_body *b, workings *w, int k) {
   } else if (!w->turning) {
     return b->viscous * w->slip[k];
   } else {
-    w->rub[k] = b->sharpness * ethd__both(INVERSE[k]) * ethd__product(w->slip_a, w->unlike, k - 1);
+    w->rub[k] = b->sharpness * ethd__both(ETHD__INVERSE[k]) * ethd__product(w->slip_a, w->unlike, k - 1);
     w->unlike[k] = -2 * ethd__half_square(w->rub, k);
   }
   return b->friction * w->rub[k] + b->viscous * w->slip[k];
@@ -58,13 +49,13 @@ ETHD__INLINE ethd__two rub(const ethd__arms_body *b, workings *w, int k) {
 ETHD__INLINE ethd__two drive(const ethd__arms_body *b, ethd__arms_series *s, workings *w, kind has, int k) {
   ethd__two torque = k ? ethd__both(0) : b->torque, d;
   if (has.compliant) {
-    d = b->stiffness * (s->motor[k] - joint(has.serial, s->link[k])) +
-        b->damping * (s->motor_v[k] - joint(has.serial, s->link_v[k]));
+    d = b->stiffness * (s->motor[k] - ethd__joint(has.serial, s->link[k])) +
+        b->damping * (s->motor_v[k] - ethd__joint(has.serial, s->link_v[k]));
     w->slip[k] = s->motor_v[k];
     w->slip_a[k] = (torque - d - rub(b, w, k)) * b->inverse_motor_inertia;
-    s->motor_v[k + 1] = w->slip_a[k] * ethd__both(INVERSE[k + 1]);
+    s->motor_v[k + 1] = w->slip_a[k] * ethd__both(ETHD__INVERSE[k + 1]);
   } else {
-    w->slip[k] = joint(has.serial, s->link_v[k]);
+    w->slip[k] = ethd__joint(has.serial, s->link_v[k]);
     d = torque - rub(b, w, k);
   }
   return has.serial ? (ethd__two){d[0] - d[1], d[1]} : d;
@@ -78,8 +69,8 @@ static void turn(const ethd__arms_series *s, workings *w, int k) {
     w->sine[0] = ethd__both(sine);
     w->cosine[0] = ethd__both(cosine);
   } else {
-    w->cosine[k] = -ethd__product(w->bend, w->sine, k - 1) * ethd__both(INVERSE[k]);
-    w->sine[k] = ethd__product(w->bend, w->cosine, k - 1) * ethd__both(INVERSE[k]);
+    w->cosine[k] = -ethd__product(w->bend, w->sine, k - 1) * ethd__both(ETHD__INVERSE[k]);
+    w->sine[k] = ethd__product(w->bend, w->cosine, k - 1) * ethd__both(ETHD__INVERSE[k]);
   }
   w->bend[k] = ethd__both(s->link_v[k][1] - s->link_v[k][0]);
 }
@@ -102,9 +93,9 @@ ETHD__INLINE void accelerate(troop *e, int i, kind has, int k) {
   const ethd__arms_body *b = &e->arms->body[i];
   ethd__arms_series *s = &e->out->series[i];
   workings *w = &e->of[i];
-  ethd__two g = drive(b, s, w, has, k), next = ethd__both(INVERSE[k + 1]);
+  ethd__two g = drive(b, s, w, has, k), next = ethd__both(ETHD__INVERSE[k + 1]);
   w->link_a[k] = has.coupled ? couple(b, s, w, g, k) : g * b->inverse_inertia;
-  if (!has.compliant) w->slip_a[k] = joint(has.serial, w->link_a[k]);
+  if (!has.compliant) w->slip_a[k] = ethd__joint(has.serial, w->link_a[k]);
   s->link[k + 1] = s->link_v[k] * next;
   s->link_v[k + 1] = w->link_a[k] * next;
   if (has.compliant) s->motor[k + 1] = s->motor_v[k] * next;
@@ -148,8 +139,8 @@ ETHD__INLINE double expand(troop *e, kind has, const double *h) {
   e->out->order = k;
   for (int i = 0; i < ETHD__ARMS; i++) {
     ethd__arms_series *s = &e->out->series[i];
-    s->link[k + 1] = s->link_v[k] * ethd__both(INVERSE[k + 1]);
-    if (has.compliant) s->motor[k + 1] = s->motor_v[k] * ethd__both(INVERSE[k + 1]);
+    s->link[k + 1] = s->link_v[k] * ethd__both(ETHD__INVERSE[k + 1]);
+    if (has.compliant) s->motor[k + 1] = s->motor_v[k] * ethd__both(ETHD__INVERSE[k + 1]);
   }
   double less = 0.75, share = 1;
   for (int i = 2; i < k; i++) less *= 0.75;
@@ -170,12 +161,6 @@ static double expand_kind(troop *e, const double *h) {
 }
 
 /* ---- a step ---- */
-
-static ethd__two value(const ethd__two *term, int order, double h) {
-  ethd__two y = term[order];
-  for (int k = order - 1; k >= 0; k--) y = y * h + term[k];
-  return y;
-}
 
 /* Evaluates polynomials of order + 1 and of order terms, side by side. */
 static void values(const ethd__two *x, const ethd__two *v, int order, double h, ethd__two *out_x, ethd__two *out_v) {
@@ -204,8 +189,9 @@ static bool move(const ethd__arms *a, ethd__arms_step *s) {
     ethd__arms_state *to = &s->to[i];
     values(x->link, x->link_v, s->order, s->length[i], &to->link, &to->link_v);
     if (a->compliant) values(x->motor, x->motor_v, s->order, s->length[i], &to->motor, &to->motor_v);
-    turned |= a->compliant ? turns(&a->body[i], x->motor_v[0], to->motor_v)
-                           : turns(&a->body[i], joint(a->serial, x->link_v[0]), joint(a->serial, to->link_v));
+    turned |= a->compliant
+                  ? turns(&a->body[i], x->motor_v[0], to->motor_v)
+                  : turns(&a->body[i], ethd__joint(a->serial, x->link_v[0]), ethd__joint(a->serial, to->link_v));
   }
   return turned;
 }
@@ -228,7 +214,8 @@ bool ethd__arms_advance(const ethd__arms *a, const double left[ETHD__ARMS], ethd
 
 void ethd__arms_joints(const ethd__arms *a, const ethd__arms_step *s, int arm, double at, double out[2]) {
   const ethd__arms_series *x = &s->series[arm];
-  ethd__two q = a->compliant ? value(x->motor, s->order + 1, at) : joint(a->serial, value(x->link, s->order + 1, at));
+  ethd__two q = a->compliant ? ethd__series_at(x->motor, s->order + 1, at)
+                             : ethd__joint(a->serial, ethd__series_at(x->link, s->order + 1, at));
   out[0] = q[0];
   out[1] = q[1];
 }

@@ -33,28 +33,19 @@ typedef struct expansion {
   int order_max;
 } expansion;
 
-static const double INVERSE[ETHD__TERMS + 1] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,
-                                                1.0 / 6,  1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11,
-                                                1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16};
-
-/* Converts the links' absolute angles, or their derivatives, to the joints'. */
-static inline ethd__two joint(bool serial, ethd__two link) {
-  return serial ? (ethd__two){link[0], link[1] - link[0]} : link;
-}
-
 /* ---- geometry ---- */
 
 ETHD__INLINE void rotate(expansion *w, int k) {
   const ethd__two *v = w->out->link_v;
-  w->cosine[k] = -ethd__product(v, w->sine, k - 1) * ethd__both(INVERSE[k]);
-  w->sine[k] = ethd__product(v, w->cosine, k - 1) * ethd__both(INVERSE[k]);
+  w->cosine[k] = -ethd__product(v, w->sine, k - 1) * ethd__both(ETHD__INVERSE[k]);
+  w->sine[k] = ethd__product(v, w->cosine, k - 1) * ethd__both(ETHD__INVERSE[k]);
 }
 
 /* Computes term k of the vector from ring to finger. */
 ETHD__INLINE void relate(expansion *w, int k) {
   if (k > 0) rotate(w, k);
   if (k >= ETHD__PATH_TERMS)
-    w->out->hand[k] = w->out->hand[k - 2] * ethd__both(w->swing * (INVERSE[k] * INVERSE[k - 1]));
+    w->out->hand[k] = w->out->hand[k - 2] * ethd__both(w->swing * (ETHD__INVERSE[k] * ETHD__INVERSE[k - 1]));
   ethd__two x = w->length * w->cosine[k], y = w->length * w->sine[k];
   w->apart[k] = (w->out->hand[k] + w->out->aside[k]) - (ethd__two){ethd__sum(x), ethd__sum(y)};
   w->half_square[k] = ethd__both(ethd__sum(ethd__half_square(w->apart, k)));
@@ -105,7 +96,7 @@ ETHD__INLINE ethd__two rub(expansion *w, int k) {
   } else if (!w->turning) {
     return w->viscous * w->slip[k];
   } else {
-    w->rub[k] = w->sharpness * ethd__both(INVERSE[k]) * ethd__product(w->slip_a, w->unlike, k - 1);
+    w->rub[k] = w->sharpness * ethd__both(ETHD__INVERSE[k]) * ethd__product(w->slip_a, w->unlike, k - 1);
     w->unlike[k] = -2 * ethd__half_square(w->rub, k);
   }
   return w->friction * w->rub[k] + w->viscous * w->slip[k];
@@ -123,13 +114,13 @@ ETHD__INLINE ethd__two drive(expansion *w, physics has, int k) {
   ethd__series *s = w->out;
   ethd__two torque = k ? ethd__both(0) : ethd__pair(b->torque), d;
   if (has.compliant) {
-    d = ethd__pair(b->stiffness) * (s->motor[k] - joint(has.serial, s->link[k])) +
-        ethd__pair(b->damping) * (s->motor_v[k] - joint(has.serial, s->link_v[k]));
+    d = ethd__pair(b->stiffness) * (s->motor[k] - ethd__joint(has.serial, s->link[k])) +
+        ethd__pair(b->damping) * (s->motor_v[k] - ethd__joint(has.serial, s->link_v[k]));
     w->slip[k] = s->motor_v[k];
     w->slip_a[k] = (torque - rub(w, k) - d) / ethd__pair(b->motor_inertia);
-    s->motor_v[k + 1] = w->slip_a[k] * INVERSE[k + 1];
+    s->motor_v[k + 1] = w->slip_a[k] * ETHD__INVERSE[k + 1];
   } else {
-    w->slip[k] = joint(has.serial, s->link_v[k]);
+    w->slip[k] = ethd__joint(has.serial, s->link_v[k]);
     d = torque - rub(w, k);
   }
   return has.serial ? (ethd__two){d[0] - d[1], d[1]} : d;
@@ -156,9 +147,9 @@ static ethd__two couple(expansion *w, ethd__two g, int k) {
 /* Computes the positions' terms k + 1. */
 ETHD__INLINE void integrate(expansion *w, physics has, int k) {
   ethd__series *s = w->out;
-  s->link[k + 1] = s->link_v[k] * INVERSE[k + 1];
-  s->aside[k + 1] = s->aside_v[k] * INVERSE[k + 1];
-  if (has.compliant) s->motor[k + 1] = s->motor_v[k] * INVERSE[k + 1];
+  s->link[k + 1] = s->link_v[k] * ETHD__INVERSE[k + 1];
+  s->aside[k + 1] = s->aside_v[k] * ETHD__INVERSE[k + 1];
+  if (has.compliant) s->motor[k + 1] = s->motor_v[k] * ETHD__INVERSE[k + 1];
 }
 
 /* Computes the speeds' terms k + 1 from the terms up to k. */
@@ -176,9 +167,9 @@ ETHD__INLINE void accelerate(expansion *w, physics has, int k) {
     f -= (ethd__two){w->force_x[k][0], w->force_y[k][0]};
   }
   w->link_a[k] = has.coupled ? couple(w, g, k) : g * w->inverse_inertia;
-  if (!has.compliant) w->slip_a[k] = joint(has.serial, w->link_a[k]);
-  s->link_v[k + 1] = w->link_a[k] * INVERSE[k + 1];
-  s->aside_v[k + 1] = f * ethd__both(INVERSE[k + 1] * w->inverse_mass);
+  if (!has.compliant) w->slip_a[k] = ethd__joint(has.serial, w->link_a[k]);
+  s->link_v[k + 1] = w->link_a[k] * ETHD__INVERSE[k + 1];
+  s->aside_v[k + 1] = f * ethd__both(ETHD__INVERSE[k + 1] * w->inverse_mass);
 }
 
 /* ---- how many terms, how far ---- */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "sim/series.h"
+#include "sim/terms.h"
 
 #define LOCATED 1e-12  /* s, to which an event is located */
 #define SHORTEST 1e-15 /* s: a turn within less, or a NaN, isn't followed */
@@ -10,13 +11,7 @@
 #define TURN 2.0       /* by which its argument may change in a step that comes nearer to 0, */
 #define PACE 5e3       /* 1/s: but by no more than this times the grid's cell, so that half the cell halves each step */
 
-static ethd__two at(const ethd__two *term, int order, double h) {
-  ethd__two y = term[order];
-  for (int k = order - 1; k >= 0; k--) y = y * h + term[k];
-  return y;
-}
-
-static double value(const ethd__two *term, int order, double h) ETHD_RT { return at(term, order, h)[0]; }
+static double value(const ethd__two *term, int order, double h) ETHD_RT { return ethd__series_at(term, order, h)[0]; }
 
 static double slope(const ethd__two *term, int order, double h) ETHD_RT {
   double y = order * term[order][0];
@@ -113,8 +108,8 @@ static void move(const ethd__body *b, const ethd__series *s, const ethd__sim_mot
   put(out[2] + (ethd__two){hand->x.x, hand->x.y}, state->q + ETHD__FINGER);
   put(out[3] + (ethd__two){hand->v.x, hand->v.y}, state->v + ETHD__FINGER);
   if (!b->compliant) return;
-  put(at(s->motor, s->order + 1, h), state->q + ETHD__MOTOR);
-  put(at(s->motor_v, s->order, h), state->v + ETHD__MOTOR);
+  put(ethd__series_at(s->motor, s->order + 1, h), state->q + ETHD__MOTOR);
+  put(ethd__series_at(s->motor_v, s->order, h), state->v + ETHD__MOTOR);
 }
 
 /* Far from its reversal friction is constant to the last digit, so a series can't see the reversal coming. */
@@ -159,8 +154,8 @@ void ethd__leg_angles(const ethd__body *b, const ethd__leg *leg, double t, doubl
     memcpy(out, t < leg->end ? leg->from.q : leg->to.q, sizeof leg->to.q);
     return;
   }
-  put(at(s->link, s->order + 1, t - leg->begin), out + ETHD__LINK);
-  if (b->compliant) put(at(s->motor, s->order + 1, t - leg->begin), out + ETHD__MOTOR);
+  put(ethd__series_at(s->link, s->order + 1, t - leg->begin), out + ETHD__LINK);
+  if (b->compliant) put(ethd__series_at(s->motor, s->order + 1, t - leg->begin), out + ETHD__MOTOR);
 }
 
 void ethd__leg_at(const ethd__body *b, const ethd__piece *piece, const ethd__leg *leg, double t, ethd__sim_state *out) {

@@ -2,10 +2,27 @@
 #ifndef ETHD__SIM_TERMS_H
 #define ETHD__SIM_TERMS_H
 
-#include "sim/two.h"
+#include "sim/body.h"
 
 /* All is inlined: sums have lengths known at compile time, and terms that a plant doesn't have disappear. */
 #define ETHD__INLINE static inline __attribute__((always_inline))
+
+/* 1 / k for k > 0 */
+static const double ETHD__INVERSE[ETHD__ORDER_MAX + 3] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,
+                                                          1.0 / 6,  1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11,
+                                                          1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16};
+
+/* Converts the links' absolute angles, or their derivatives, to the joints'. */
+static inline ethd__two ethd__joint(bool serial, ethd__two link) {
+  return serial ? (ethd__two){link[0], link[1] - link[0]} : link;
+}
+
+/* The series' value at h. */
+static inline ethd__two ethd__series_at(const ethd__two *term, int order, double h) {
+  ethd__two y = term[order];
+  for (int k = order - 1; k >= 0; k--) y = y * h + term[k];
+  return y;
+}
 
 /* x_1 y_(k-1) + ... + x_(k-1) y_1 */
 ETHD__INLINE ethd__two ethd__middle(const ethd__two *x, const ethd__two *y, int k) {

@@ -5,7 +5,7 @@
 #include "core/named.h"
 
 /* Refuses a setup that ethd_setup_default didn't make (ETHD_E_ARGUMENT), or made for other headers (ETHD_E_SIZE). */
-ethd_status ethd__setup_made(const ethd_setup *setup, ethd_error *error);
+ethd_status ethd__setup_made(const void *setup, ethd_error *error);
 
 /* Gives a setup that is all zero but for its cookie its defaults. */
 void ethd__setup_defaults(ethd_setup *setup);
@@ -16,7 +16,7 @@ void ethd__setup_defaults(ethd_setup *setup);
 #define ETHD__SETUP_FIELDS 15
 extern const ethd__setup_field ethd__setup_fields[ETHD__SETUP_FIELDS];
 
-double ethd__setup_field_get(const ethd_setup *setup, const ethd__setup_field *field, uint32_t index);
-void ethd__setup_field_set(ethd_setup *setup, const ethd__setup_field *field, uint32_t index, double value);
+double ethd__setup_field_get(const void *setup, const ethd__setup_field *field, uint32_t index);
+void ethd__setup_field_set(void *setup, const ethd__setup_field *field, uint32_t index, double value);
 
 #endif

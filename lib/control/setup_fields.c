@@ -39,14 +39,14 @@ const ethd__setup_field ethd__setup_fields[ETHD__SETUP_FIELDS] = {
      AT(v_hysteresis)},
 };
 
-double ethd__setup_field_get(const ethd_setup *setup, const ethd__setup_field *field, uint32_t index) {
-  if (field->offset == AT(arm.mechanism)) return setup->arm.mechanism;
+double ethd__setup_field_get(const void *setup, const ethd__setup_field *field, uint32_t index) {
+  if (field->offset == AT(arm.mechanism)) return ((const ethd_setup *)setup)->arm.mechanism;
   return ((const double *)(const void *)((const char *)setup + field->offset))[index];
 }
 
-void ethd__setup_field_set(ethd_setup *setup, const ethd__setup_field *field, uint32_t index, double value) {
+void ethd__setup_field_set(void *setup, const ethd__setup_field *field, uint32_t index, double value) {
   if (field->offset == AT(arm.mechanism))
-    setup->arm.mechanism = (ethd_mechanism)value;
+    ((ethd_setup *)setup)->arm.mechanism = (ethd_mechanism)value;
   else
     ((double *)(void *)((char *)setup + field->offset))[index] = value;
 }

@@ -48,7 +48,8 @@ void ethd_setup_fill(ethd_setup *setup, const ethd_sizes *sizes) {
     ethd__setup_defaults(setup);
 }
 
-ethd_status ethd__setup_made(const ethd_setup *setup, ethd_error *error) {
+ethd_status ethd__setup_made(const void *any, ethd_error *error) {
+  const ethd_setup *setup = any;
   if (setup && setup->cookie == COOKIE) return ETHD_OK;
   if (setup && setup->cookie - SKEWED < COUNT) return refuse(setup->cookie - SKEWED, setup->bytes, error);
   return ethd__error(error, ETHD_E_ARGUMENT, "setup (made by ethd_setup_default?)");

@@ -25,18 +25,9 @@ static ethd__setup_field field_at(uint32_t index) {
                                     : field_of_limit(&ethd_limit_rows[index - ETHD__SETUP_FIELDS]);
 }
 
-static ethd_status made(const void *setup, ethd_error *error) { return ethd__setup_made(setup, error); }
-
-static double get(const void *setup, const ethd__setup_field *field, uint32_t index) {
-  return ethd__setup_field_get(setup, field, index);
-}
-
-static void set(void *setup, const ethd__setup_field *field, uint32_t index, double value) {
-  ethd__setup_field_set(setup, field, index, value);
-}
-
-static const ethd__named named = {
-    ethd_setup_parts, ETHD_SETUP_PARTS, ETHD__SETUP_FIELDS + ETHD_LIMITS, field_at, get, set, made};
+static const ethd__named named = {ethd_setup_parts, ETHD_SETUP_PARTS,      ETHD__SETUP_FIELDS + ETHD_LIMITS,
+                                  field_at,         ethd__setup_field_get, ethd__setup_field_set,
+                                  ethd__setup_made};
 
 const ethd_setup_part *ethd_setup_part_of(const char *section) { return ethd__named_part_of(&named, section); }
 

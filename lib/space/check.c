@@ -121,7 +121,8 @@ static void prepare_core(const ethd_space_setup *s, ethd__core_plan *out) {
   ethd__laws_plan(ETHD__LAWS(s), out);
 }
 
-ethd_status ethd__space_setup_made(const ethd_space_setup *s, ethd_error *error) {
+ethd_status ethd__space_setup_made(const void *setup, ethd_error *error) {
+  const ethd_space_setup *s = setup;
   if (!s || s->cookie != COOKIE)
     return ethd__error(error, ETHD_E_ARGUMENT, "setup (made by ethd_space_setup_default?)");
   if (s->bytes == sizeof *s) return ETHD_OK;

@@ -18,7 +18,7 @@ typedef struct ethd__space_plan {
 
 /* Refuses a setup that ethd_space_setup_default didn't make (ETHD_E_ARGUMENT), or made for other headers
    (ETHD_E_SIZE). */
-ethd_status ethd__space_setup_made(const ethd_space_setup *setup, ethd_error *error);
+ethd_status ethd__space_setup_made(const void *setup, ethd_error *error);
 
 /* Checks the setup and works out the plan; a failure leaves the plan undefined. [main] */
 ethd_status ethd__space_prepare(const ethd_space_setup *setup, ethd__space_plan *out, ethd_error *error);

@@ -62,10 +62,8 @@ static void set(void *setup, const ethd__setup_field *field, uint32_t index, dou
     ((double *)(void *)at)[index] = value;
 }
 
-static ethd_status made(const void *setup, ethd_error *error) { return ethd__space_setup_made(setup, error); }
-
 static const ethd__named named = {
-    ethd_space_parts, ETHD_SPACE_PARTS, ETHD_SPACE_NUMBER_COUNT + OTHERS, field_at, get, set, made};
+    ethd_space_parts, ETHD_SPACE_PARTS, ETHD_SPACE_NUMBER_COUNT + OTHERS, field_at, get, set, ethd__space_setup_made};
 
 /* ---- by names ---- */
 
