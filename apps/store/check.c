@@ -66,24 +66,10 @@ static bool is_there(const char *path) {
   return ethd__file_look_at(path, &info) == 0;
 }
 
-/* Refuses a folder of an earlier version, which kept a journal of its own format. */
-static ethd_status refuse_old(const char *path, char *message) {
-  char *folder = ethd__path_folder(path), *journal = folder ? ethd__path_join(folder, "journal") : NULL;
-  bool old = journal && is_there(journal);
-  free(journal);
-  free(folder);
-  if (!old) return ETHD_OK;
-  return ethd__say(
-      message, ETHD_E_SYNTAX,
-      "%s: isn't there, but a journal of an earlier version is: its tables (taps.csv and so on) can be read, "
-      "and a new folder is needed to go on",
-      path);
-}
-
 ethd_status ethd__store_look(const char *path, ethd__store_file *out, char message[ETHD_MESSAGE_MAX]) {
   struct stat info;
   *out = (ethd__store_file){.there = is_there(path)};
-  if (!out->there) return refuse_old(path, message);
+  if (!out->there) return ETHD_OK;
   int fd = ethd__file_read(path, &info, message);
   if (fd < 0) return ETHD_E_FILE;
   pid_t pid = holder(fd);

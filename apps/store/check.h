@@ -12,7 +12,7 @@ typedef struct ethd__store_file {
 } ethd__store_file;
 
 /* Looks at a file. Refuses a link, a pipe and the like, a file with a hole, a file for which SQLite would read a log or
-   another journal, and a file that another program has open. Refuses a missing file beside a journal of an earlier version. */
+   another journal, and a file that another program has open. */
 ETHD_MUST_CHECK ethd_status ethd__store_look(const char *path, ethd__store_file *out, char message[ETHD_MESSAGE_MAX]);
 
 /* Refuses an open store whose mark, tables, rows or hash aren't those of this study. */

@@ -107,15 +107,15 @@ static void put_path(FILE *file, const char *path) {
 static char *uri_of(const char *path, const char *query) {
   char *folder = ethd__path_folder(path), *real = folder ? realpath(folder, NULL) : NULL, *uri = NULL;
   const char *name = strrchr(path, '/');
-  size_t length;
-  FILE *file = real ? open_memstream(&uri, &length) : NULL;
-  if (file) {
+  if (real) {
+    ethd__printed text;
+    FILE *file = ethd__print_begin(&text);
     fputs("file:", file);
     put_path(file, real);
     putc('/', file);
     put_path(file, name ? name + 1 : path);
     fputs(query, file);
-    if (fclose(file)) ethd__fail_memory();
+    uri = ethd__print_end(&text);
   }
   free(real);
   free(folder);

@@ -8,15 +8,12 @@
 
 #define ETHD_STUDY_PLANNED 10000u /* participants whose orders are printed at most */
 
-/* Writes orders.csv. */
-void ethd__plan_table(FILE *file, const ethd__protocol *protocol);
+/* Returns the text of orders.csv, which the caller frees. */
+char *ethd__plan_table(const ethd__protocol *protocol);
 
 /* For people: each participant's order, the balance at every number of participants, and a warning where the study's
    own number isn't balanced, with the next one that is. Balanced: at each speed each strategy is as often the first, as
    often the last, and as often directly behind each other one. */
 void ethd__plan_print(FILE *file, const ethd__protocol *protocol);
-
-/* Returns whether the first `people` participants are balanced. */
-bool ethd__plan_balanced(const ethd__protocol *protocol, uint32_t people);
 
 #endif

@@ -272,11 +272,6 @@ TEST(test_no_file_of_its_own) {
   ck_assert_int_eq(unlink(path) | rename(other, path) | truncate(path, 1 << 30), 0);
   refused(ethd__store_read(path, HASH, &store, message), "has a hole");
   refused(ethd__store_open(path, HASH, &store, message), "has a hole");
-  ck_assert_int_eq(unlink(path), 0);
-  snprintf(other, sizeof other, "%s/journal", folder);
-  done(ethd_text_write(other, "begin", 5, message));
-  refused(ethd__store_read(path, HASH, &store, message), "journal of an earlier version");
-  refused(ethd__store_open(path, HASH, &store, message), "journal of an earlier version");
   ethd__received_leave(&received);
 }
 

@@ -208,15 +208,6 @@ int ethd__file_create(const char *path, char message[ETHD_MESSAGE_MAX]) {
   return fd < 0 ? refuse(fd, path, ethd__file_why(), message) : fd;
 }
 
-int ethd__file_edit(const char *path, bool create, char message[ETHD_MESSAGE_MAX]) {
-  struct stat info;
-  bool is_link = ethd__file_look_at(path, &info) == 0 && S_ISLNK(info.st_mode);
-  if (is_link && ethd__file_look(path, &info) != 0) return refuse(-1, path, ethd__file_why(), message);
-  int fd = ethd__file_open(path, O_RDWR | O_NONBLOCK | (create ? O_CREAT : 0), 0666);
-  if (fd < 0 || fstat(fd, &info) != 0) return refuse(fd, path, ethd__file_why(), message);
-  return S_ISREG(info.st_mode) ? fd : refuse(fd, path, "isn't a file; another one is needed", message);
-}
-
 FILE *ethd__file_stream(const char *path, char message[ETHD_MESSAGE_MAX]) {
   struct stat info;
   int fd = ethd__file_read(path, &info, message);

@@ -55,9 +55,6 @@ int ethd__file_read(const char *path, struct stat *out, char message[ETHD_MESSAG
 /* Makes a new file to write at, in the place of a regular one that is there; a character device is opened as it is. */
 int ethd__file_create(const char *path, char message[ETHD_MESSAGE_MAX]);
 
-/* Opens a regular file to read and write it where it is. */
-int ethd__file_edit(const char *path, bool create, char message[ETHD_MESSAGE_MAX]);
-
 /* Opens a regular file to read it in parts; NULL: message. */
 FILE *ethd__file_stream(const char *path, char message[ETHD_MESSAGE_MAX]);
 
