@@ -112,15 +112,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 static char *help(int key, const char *text, void *input) {
   (void)input;
   if (key != ARGP_KEY_HELP_POST_DOC || !text) return (char *)(uintptr_t)text;
-  char *out;
-  size_t size;
-  FILE *to = open_memstream(&out, &size);
-  if (!to) return (char *)(uintptr_t)text;
+  ethd__printed out;
+  FILE *to = ethd__print_begin(&out);
   fputs(text, to);
   for (int i = 0; i < ETHD_SHAPE_COUNT; i++)
     fprintf(to, "\n  %s %s [material=NAME]", ethd_shape_name((ethd_shape)i), ethd_shape_form((ethd_shape)i));
   fputs("\n  material NAME [KEY=NUMBER...]", to);
-  return fclose(to) ? (char *)(uintptr_t)text : out;
+  return ethd__print_end(&out);
 }
 
 int main(int argc, char **argv) {

@@ -41,15 +41,12 @@ static void set_ranges(const ethd__tune_rig *rig, ethd__tune_space *space) {
 static char *head_of(const ethd__tune_search *search, const ethd__tune_entry *choice, const ethd__loaded *loaded,
                      const ethd__tune_worths *worths) {
   const ethd__tune_space *space = search->rig->space;
-  char *out = NULL;
-  size_t length;
-  FILE *f = open_memstream(&out, &length);
-  if (!f) ethd__fail_memory();
+  ethd__printed out;
+  FILE *f = ethd__print_begin(&out);
   fprintf(f, "Tuned by ethd-tune for plant %s (simulated), transition %s, margins %g and %g ms.\n", loaded->plant_name,
           space->law, arg.margin.gain, 1e3 * arg.margin.delay);
   ethd__tune_print_worths(f, space, &choice->point, worths);
-  if (fclose(f)) ethd__fail_memory();
-  return out;
+  return ethd__print_end(&out);
 }
 
 static void write_tuned(const ethd__tune_search *search, const ethd__tune_entry *choice, const ethd__loaded *loaded,
@@ -59,7 +56,6 @@ static void write_tuned(const ethd__tune_search *search, const ethd__tune_entry 
   char *folder = ethd__path_folder(arg.out), *head = head_of(search, choice, loaded, worths);
   bool same = folder && space->config->folder && !strcmp(folder, space->config->folder);
   char *text = ethd__tuned_text(space, &choice->point, head, !same);
-  if (!text) ethd__fail_memory();
   check(ethd_text_write(arg.out, text, strlen(text), message), message);
   free(text);
   free(head);

@@ -93,6 +93,18 @@ void ethd__fail(int code, const char *format, ...) {
 
 void ethd__fail_memory(void) { ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY)); }
 
+FILE *ethd__print_begin(ethd__printed *p) {
+  p->file = open_memstream(&p->text, &p->length);
+  if (!p->file) ethd__fail_memory();
+  return p->file;
+}
+
+char *ethd__print_end(ethd__printed *p) {
+  bool failed = ferror(p->file);
+  if (fclose(p->file) || failed) ethd__fail_memory();
+  return p->text;
+}
+
 int ethd__exit_code(ethd_status status) {
   switch (status) {
   case ETHD_E_MEMORY:

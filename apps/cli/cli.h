@@ -8,6 +8,7 @@
 #include <signal.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "ethd/config.h"
 
@@ -33,6 +34,16 @@ _Noreturn void ethd__fail(int code, const char *format, ...) __attribute__((form
 
 /* Does the same for "no memory". */
 _Noreturn void ethd__fail_memory(void);
+
+/* A text that is printed into memory; its end returns it, which the caller frees. Exit 1 without memory. */
+typedef struct ethd__printed {
+  FILE *file;
+  char *text;
+  size_t length;
+} ethd__printed;
+
+FILE *ethd__print_begin(ethd__printed *out);
+char *ethd__print_end(ethd__printed *out);
 
 /* Returns the exit code for a failure of the library or of drivers: 1 for no memory, device and the like, else 2. */
 int ethd__exit_code(ethd_status status);

@@ -1,11 +1,11 @@
 #include "describe/describe.h"
 
+#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/json.h"
 #include "ethd/ethd.h"
 #include "sim/plant.h"
 #include "study/columns.h"
@@ -13,35 +13,17 @@
 #include "tap/device.h"
 #include "tap/study.h"
 #include "text/claim.h"
+#include "text/error_text.h"
 #include "text/text.h"
 
 /* ---- study.json ---- */
 
-static void put_key(FILE *file, const char *key) { fprintf(file, ",\n  \"%s\": ", key); }
+static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
 
-static void put_word(FILE *file, const char *key, const char *word) {
-  put_key(file, key);
-  ethd__json_word(file, word);
-}
-
-static void put_number(FILE *file, const char *key, double value) {
-  put_key(file, key);
-  ethd__json_number(file, value);
-}
-
-static void put_truth(FILE *file, const char *key, bool truth) {
-  put_key(file, key);
-  fputs(truth ? "true" : "false", file);
-}
-
-static void put_words(FILE *file, const char *key, const ethd__word_list *list) {
-  put_key(file, key);
-  putc('[', file);
-  for (size_t i = 0; i < list->count; i++) {
-    if (i) fputs(", ", file);
-    ethd__json_word(file, list->word[i]);
-  }
-  putc(']', file);
+static json_t *words(const ethd__word_list *list) {
+  json_t *out = json_array();
+  for (size_t i = 0; i < list->count; i++) json_array_append_new(out, json_string(list->word[i]));
+  return out;
 }
 
 /* The name in the study's file or the configuration: the folder holds a copy. */
@@ -52,107 +34,76 @@ static const char *plant_name(const ethd__folder *folder) {
   return !ethd__device_read(folder->loaded.config, &device, unsaid) && device.plant ? device.plant->value : ETHD__PLANT;
 }
 
-static void put_protocol(FILE *file, const ethd__folder *folder) {
+static json_t *protocol(const ethd__folder *folder) {
   static const char *const hands[] = {"simulated", "recorded", "people", "mouse"};
   const ethd__protocol *p = &folder->protocol;
-  put_word(file, "hands", hands[p->hands]);
-  put_word(file, "motion", p->motion);
-  put_truth(file, "follows_movement", folder->finger);
-  put_word(file, "plant", plant_name(folder));
-  put_word(file, "device", folder->loaded.config->device);
-  put_truth(file, "is_simulated", !strcmp(folder->loaded.config->device, ethd_driver_sim.id));
-  put_truth(file, "valid_by_finger", p->validity == ETHD_TAP_BY_FINGER);
-  put_number(file, "band_low_mps", p->band_low);
-  put_number(file, "band_high_mps", p->band_high);
-  put_number(file, "slack_m", p->slack);
-  put_number(file, "margin_d_max_m", p->margin_d_max);
-  put_number(file, "margin_v_of_mps", p->margin_v_of);
-  put_number(file, "margin_v_rmin_mps", p->margin_v_rmin);
-  put_words(file, "strategies", &p->strategies);
-  put_words(file, "primary", &p->primary);
-  put_word(file, "exclusions", p->exclusions);
+  const char *device = folder->loaded.config->device;
+  return json_pack("{s:s, s:s, s:s, s:s, s:s?, s:b, s:s, s:s, s:b, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:s?}",
+                   "name", p->name, "hash", folder->hash, "version", ETHD_VERSION, "hands", hands[p->hands], "motion",
+                   p->motion, "follows_movement", folder->finger != NULL, "plant", plant_name(folder), "device", device,
+                   "is_simulated", !strcmp(device, ethd_driver_sim.id), "valid_by_finger",
+                   p->validity == ETHD_TAP_BY_FINGER, "band_low_mps", number(p->band_low), "band_high_mps",
+                   number(p->band_high), "slack_m", number(p->slack), "margin_d_max_m", number(p->margin_d_max),
+                   "margin_v_of_mps", number(p->margin_v_of), "margin_v_rmin_mps", number(p->margin_v_rmin),
+                   "strategies", words(&p->strategies), "primary", words(&p->primary), "exclusions", p->exclusions);
 }
 
-static void put_speeds(FILE *file, const ethd_plant *plant) {
-  static const char *const words[] = {"low", "high"};
-  put_key(file, "speeds");
+static json_t *speeds(const ethd_plant *plant) {
+  static const char *const names[] = {"low", "high"};
+  json_t *out = json_object();
   for (int i = 0; i < 2; i++) {
     ethd__speed speed;
-    (void)!ethd__speed_parse(words[i], plant, &speed);
-    fprintf(file, "%s\"%s\": {\"centre_mps\": ", i ? ", " : "{", words[i]);
-    ethd__json_number(file, speed.centre);
-    fputs(", \"band_mps\": ", file);
-    ethd__json_number(file, speed.band);
-    putc('}', file);
+    (void)!ethd__speed_parse(names[i], plant, &speed);
+    json_object_set_new(out, names[i],
+                        json_pack("{s:o, s:o}", "centre_mps", number(speed.centre), "band_mps", number(speed.band)));
   }
-  putc('}', file);
+  return out;
 }
 
-static void put_question(FILE *file, const ethd__question *question) {
-  char words[256];
-  fputs("{\"text\": ", file);
-  ethd__json_word(file, question->text);
-  fprintf(file, ", \"has_words\": %s, \"answers\": [", question->answers ? "true" : "false");
-  for (int k = 1; k <= (int)ethd__answer_count(question); k++) {
-    ethd__answer_words(question, k, words, sizeof words);
-    if (k > 1) fputs(", ", file);
-    ethd__json_word(file, words);
-  }
-  fputs("]}", file);
-}
-
-static void put_questionnaire(FILE *file, const ethd__protocol *p) {
-  put_truth(file, "survey", p->survey);
-  put_truth(file, "own_questions", p->questionnaire.own);
-  put_key(file, "questions");
-  putc('[', file);
-  for (size_t i = 0; i < ethd__question_count(p->questionnaire.question[ETHD_ASK_BLOCK]); i++) {
-    fputs(i ? ",\n    " : "\n    ", file);
-    put_question(file, &p->questionnaire.question[ETHD_ASK_BLOCK][i]);
-  }
-  putc(']', file);
-}
-
-static void put_grid(FILE *file, const ethd__protocol *p) {
-  put_key(file, "grid");
-  putc('[', file);
-  for (size_t i = 0; i < p->axis_count; i++) {
-    fputs(i ? ", {\"key\": " : "{\"key\": ", file);
-    ethd__json_word(file, p->axes[i].key);
-    fputs(", \"values\": [", file);
-    for (size_t k = 0; k < p->axes[i].values.count; k++) {
-      if (k) fputs(", ", file);
-      ethd__json_word(file, p->axes[i].values.word[k]);
+static json_t *questions(const ethd__protocol *p) {
+  const ethd__question *list = p->questionnaire.question[ETHD_ASK_BLOCK];
+  json_t *out = json_array();
+  for (size_t i = 0; i < ethd__question_count(list); i++) {
+    json_t *answers = json_array();
+    char text[256];
+    for (int k = 1; k <= (int)ethd__answer_count(&list[i]); k++) {
+      ethd__answer_words(&list[i], k, text, sizeof text);
+      json_array_append_new(answers, json_string(text));
     }
-    fputs("]}", file);
+    json_array_append_new(out, json_pack("{s:s, s:b, s:o}", "text", list[i].text, "has_words", list[i].answers != NULL,
+                                         "answers", answers));
   }
-  putc(']', file);
+  return out;
 }
 
-static void put_view(FILE *file, const ethd_setup *setup, const ethd__view *view) {
-  put_word(file, "mechanism", ethd_arm_name(setup->arm.mechanism));
-  put_number(file, "link1_m", setup->arm.link1);
-  put_number(file, "link2_m", setup->arm.link2);
-  put_number(file, "period_s", view->rule.period);
-  put_number(file, "ring_radius_m", view->ring_radius);
-  put_number(file, "d_beta_m", view->rule.d_beta);
-  put_truth(file, "speed_of_motor_side", view->rule.side);
-  put_number(file, "normal_x", view->rule.n.x);
-  put_number(file, "normal_y", view->rule.n.y);
-  put_number(file, "wall_m", view->wall);
+static json_t *grid(const ethd__protocol *p) {
+  json_t *out = json_array();
+  for (size_t i = 0; i < p->axis_count; i++)
+    json_array_append_new(out, json_pack("{s:s, s:o}", "key", p->axes[i].key, "values", words(&p->axes[i].values)));
+  return out;
 }
 
-static void put_study(FILE *file, const ethd__folder *folder, const ethd__view *view) {
-  fputs("{\n  \"name\": ", file);
-  ethd__json_word(file, folder->protocol.name);
-  put_word(file, "hash", folder->hash);
-  put_word(file, "version", ETHD_VERSION);
-  put_protocol(file, folder);
-  put_speeds(file, &folder->loaded.plant);
-  put_questionnaire(file, &folder->protocol);
-  put_grid(file, &folder->protocol);
-  put_view(file, &folder->loaded.config->setup, view);
-  fputs("\n}\n", file);
+static json_t *sight(const ethd_setup *setup, const ethd__view *view) {
+  return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:b, s:o, s:o, s:o}", "mechanism",
+                   ethd_arm_name(setup->arm.mechanism), "link1_m", number(setup->arm.link1), "link2_m",
+                   number(setup->arm.link2), "period_s", number(view->rule.period), "ring_radius_m",
+                   number(view->ring_radius), "d_beta_m", number(view->rule.d_beta), "speed_of_motor_side",
+                   view->rule.side, "normal_x", number(view->rule.n.x), "normal_y", number(view->rule.n.y), "wall_m",
+                   number(view->wall));
+}
+
+/* Returns NULL where a text isn't UTF-8, or without memory. */
+static json_t *study(const ethd__folder *folder, const ethd__view *view) {
+  const ethd__protocol *p = &folder->protocol;
+  json_t *out = protocol(folder), *seen = sight(&folder->loaded.config->setup, view),
+         *asked = json_pack("{s:o, s:b, s:b, s:o, s:o}", "speeds", speeds(&folder->loaded.plant), "survey", p->survey,
+                            "own_questions", p->questionnaire.own, "questions", questions(p), "grid", grid(p));
+  bool whole = !json_object_update(out, asked) && !json_object_update(out, seen);
+  json_decref(asked);
+  json_decref(seen);
+  if (whole) return out;
+  json_decref(out);
+  return NULL;
 }
 
 /* ---- files ---- */
@@ -168,15 +119,17 @@ static ethd_status find_view(const ethd__folder *folder, ethd__view *out, char *
 
 static ethd_status write_study(const ethd__folder *folder, const char *out, char *message) {
   ethd__view view;
-  ethd_replace replace;
   ethd_status status = find_view(folder, &view, message);
   if (status) return status;
-  char *path = ethd__folder_path(out, "study.json");
-  status = ethd_replace_begin(path, &replace, message);
+  json_t *facts = study(folder, &view);
+  char *text = json_dumps(facts, JSON_INDENT(2) | JSON_REAL_PRECISION(17)),
+       *path = ethd__folder_path(out, "study.json");
+  status = text ? ethd_text_write(path, text, strlen(text), message)
+                : ethd__say(message, ETHD_E_SYNTAX, "%s: a text isn't UTF-8", folder->protocol.path);
+  json_decref(facts);
+  free(text);
   free(path);
-  if (status) return status;
-  put_study(replace.file, folder, &view);
-  return ethd_replace_commit(&replace, message);
+  return status;
 }
 
 static ethd_status write_tables(char *const text[ETHD_TABLES], const char *out, char *message) {

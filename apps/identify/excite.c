@@ -63,13 +63,11 @@ static void put_device(FILE *out, const ethd_config *c, bool dry) {
 /* Returns the session's configuration: the given one, but with the laws for excitation and the driver `excite` after
    the device, or after a simulated device for a dry run. */
 static char *compose(const ethd__excitation *x, const ethd_config *c, double torque, bool dry) {
-  char *text = NULL;
-  size_t length;
-  FILE *out = open_memstream(&text, &length);
+  ethd__printed text;
+  FILE *out = ethd__print_begin(&text);
   const ethd_ini *ini = &ethd__config_whole(c)->ini;
   bool sim = !strcmp(c->device, "sim"), simulated = sim || dry;
   double stiffness = SPRING * x->share * torque * c->setup.arm.link1 / x->half;
-  if (!out) ethd__fail_memory();
   for (uint32_t i = 0; i < ini->count; i++)
     if (stays(ini->keys[i].section))
       fprintf(out, "[%s]\n%s = %s\n", ini->keys[i].section, ini->keys[i].key, ini->keys[i].value);
@@ -79,8 +77,7 @@ static char *compose(const ethd__excitation *x, const ethd_config *c, double tor
   if (simulated) fprintf(out, "sim.empty = yes\nsim.meet_x = %.10g\nsim.meet_y = %.10g\n", x->at.x, x->at.y);
   fprintf(out, "excite.torque = %.6g\nexcite.x = %.10g\nexcite.y = %.10g\nexcite.half = %.6g\n", x->share * torque,
           x->at.x, x->at.y, x->half);
-  if (fclose(out)) ethd__fail_memory();
-  return text;
+  return ethd__print_end(&text);
 }
 
 /* ---- a session ---- */

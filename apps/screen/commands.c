@@ -75,10 +75,8 @@ static void make_folder(const ethd__study_options *o) {
 
 /* Prints the whole command that resumes the session, so that nobody resumes it with another hand. */
 static char *going_on(const ethd__study_options *o, const char *folder) {
-  char *text = NULL;
-  size_t length;
-  FILE *file = open_memstream(&text, &length);
-  if (!file) ethd__fail_memory();
+  ethd__printed text;
+  FILE *file = ethd__print_begin(&text);
   fprintf(file, strpbrk(folder, UNQUOTED) ? "ethd-study --resume '%s'" : "ethd-study --resume %s", folder);
   if (o->first) fprintf(file, " --participant %lld", (long long)o->first);
   if (o->last > o->first) fprintf(file, "-%lld", (long long)o->last);
@@ -88,8 +86,7 @@ static char *going_on(const ethd__study_options *o, const char *folder) {
   if (o->is_virtual) fputs(" --virtual", file);
   if (o->markers) fprintf(file, " --markers %s", o->markers);
   if (o->quiet) fputs(" --quiet", file);
-  if (fclose(file)) ethd__fail_memory();
-  return text;
+  return ethd__print_end(&text);
 }
 
 /* Returns true if the folder's configuration names plugins, which ethd-report runs only when it is told to. */

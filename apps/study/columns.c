@@ -119,48 +119,41 @@ ethd__columns ethd__columns_first(ethd__study_table table, const ethd__table_sco
 
 ethd__columns ethd__columns_of(ethd__study_table table) { return tables[table]; }
 
-void ethd__columns_asked(ethd__study_table table, const ethd__protocol *p, FILE *file,
-                         void (*each)(FILE *file, const char *column, const ethd__question *q)) {
+void ethd__columns_asked(ethd__study_table table, const ethd__protocol *p, void *user,
+                         void (*each)(void *user, const char *column, const ethd__question *q)) {
   for (int when = 0; when < ETHD_ASKINGS; when++) {
     const ethd__question *list = p->questionnaire.question[when];
     if (table != (when == ETHD_ASK_BLOCK ? ETHD_TABLE_SURVEY : ETHD_TABLE_PARTICIPANTS)) continue;
     for (size_t i = 0; i < ethd__question_count(list); i++) {
       char column[24];
       snprintf(column, sizeof column, "%sq%zu", ethd__asking_columns[when], i + 1);
-      each(file, column, &list[i]);
+      each(user, column, &list[i]);
     }
   }
 }
 
-static void put_name(FILE *file, const char *column, const ethd__question *q) {
+static void put_name(void *file, const char *column, const ethd__question *q) {
   (void)q;
   fprintf(file, ",%s", column);
 }
 
 char *ethd__table_header(ethd__study_table table, const ethd__protocol *protocol) {
-  char *text = NULL;
-  size_t length;
-  FILE *file = open_memstream(&text, &length);
-  if (!file) ethd__fail_memory();
+  ethd__printed text;
+  FILE *file = ethd__print_begin(&text);
   for (size_t i = 0; i < tables[table].count; i++) fprintf(file, "%s%s", i ? "," : "", tables[table].row[i].name);
   ethd__columns_asked(table, protocol, file, put_name);
-  bool failed = ferror(file);
-  if (fclose(file) || failed) ethd__fail_memory();
-  return text;
+  return ethd__print_end(&text);
 }
 
 char *ethd__simulation_header(const ethd__protocol *p) {
-  char *text = NULL, *header = ethd__table_header(ETHD_TABLE_TAPS, p);
-  size_t length;
-  FILE *file = open_memstream(&text, &length);
-  if (!file) ethd__fail_memory();
+  ethd__printed text;
+  char *header = ethd__table_header(ETHD_TABLE_TAPS, p);
+  FILE *file = ethd__print_begin(&text);
   for (size_t i = 0; i < sizeof simulation / sizeof *simulation; i++) fprintf(file, "%s,", simulation[i].name);
   fputs(header, file);
   for (size_t i = 0; i < p->axis_count; i++) fprintf(file, ",%s", p->axes[i].key);
-  bool failed = ferror(file);
-  if (fclose(file) || failed) ethd__fail_memory();
   free(header);
-  return text;
+  return ethd__print_end(&text);
 }
 
 const ethd_param *ethd__gain_of(const ethd_setup *setup, const char *name, ethd_setup_key *key) {

@@ -51,8 +51,8 @@ ethd__columns ethd__columns_of(ethd__study_table table);
 ethd__columns ethd__columns_first(ethd__study_table table, const ethd__table_scope *scope);
 
 /* Calls `each` for the questions whose answers stand in the table, behind its columns. */
-void ethd__columns_asked(ethd__study_table table, const ethd__protocol *protocol, FILE *file,
-                         void (*each)(FILE *file, const char *column, const ethd__question *question));
+void ethd__columns_asked(ethd__study_table table, const ethd__protocol *protocol, void *user,
+                         void (*each)(void *user, const char *column, const ethd__question *question));
 
 /* Returns a gain of the grid by its name, "section.key"; NULL where the configuration's own laws don't have it, because
    it belongs to another strategy. */

@@ -1,29 +1,22 @@
 #include "study/dictionary.h"
 
+#include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/json.h"
+#include "cli/cli.h"
 #include "ethd/ethd.h"
 
-#define QUESTION_1 "When did you feel the touch, beside the moment at which the circle reached the wall on the screen?"
-#define ANSWERS_1 "well before | a little before | just then | a little after | well after"
-#define QUESTION_2 "What did the wall do as you touched it?"
-#define ANSWERS_2                                                                                         \
-  "moved clearly to the left | moved slightly to the left | stood still | moved slightly to the right | " \
-  "moved clearly to the right"
-#define QUESTION_3 "How did the touch feel?"
-#define ANSWERS_3 "very natural | natural | neither | unnatural | very unnatural"
-
 const ethd__question ethd__paper_questions[3] = {
-    {(char *)QUESTION_1, (char *)ANSWERS_1, 0},
-    {(char *)QUESTION_2, (char *)ANSWERS_2, 0},
-    {(char *)QUESTION_3, (char *)ANSWERS_3, 0},
+    {(char *)"When did you feel the touch, beside the moment at which the circle reached the wall on the screen?",
+     (char *)"well before | a little before | just then | a little after | well after", 0},
+    {(char *)"What did the wall do as you touched it?",
+     (char *)"moved clearly to the left | moved slightly to the left | stood still | moved slightly to the right | "
+             "moved clearly to the right",
+     0},
+    {(char *)"How did the touch feel?", (char *)"very natural | natural | neither | unnatural | very unnatural", 0},
 };
-
-const char *const ethd__questions[3] = {QUESTION_1 " 1 to 5: " ANSWERS_1, QUESTION_2 " 1 to 5: " ANSWERS_2,
-                                        QUESTION_3 " 1 to 5: " ANSWERS_3};
 
 static const char files[] =
     "# What is in this folder\n\n"
@@ -83,7 +76,7 @@ static void describe(FILE *file, ethd__columns columns) {
     fprintf(file, "| %s | %s | %s |\n", columns.row[i].name, columns.row[i].unit, columns.row[i].meaning);
 }
 
-static void describe_question(FILE *file, const char *column, const ethd__question *q) {
+static void describe_question(void *file, const char *column, const ethd__question *q) {
   char words[256];
   fprintf(file, "| %s | | %s%s", column, q->text, ethd__question_is_text(q) ? " In words." : "");
   for (int k = 1; k <= (int)ethd__answer_count(q); k++) {
@@ -103,10 +96,8 @@ static void describe_table(FILE *file, ethd__study_table table, const ethd__tabl
 }
 
 char *ethd__dictionary(const ethd__table_scope *scope) {
-  char *text = NULL;
-  size_t length;
-  FILE *file = open_memstream(&text, &length);
-  if (!file) return NULL;
+  ethd__printed text;
+  FILE *file = ethd__print_begin(&text);
   fputs(files, file);
   for (int i = 0; i < ETHD_TABLES; i++) {
     fprintf(file, "## %s.csv\n\n", ethd__table_names[i]);
@@ -115,109 +106,93 @@ char *ethd__dictionary(const ethd__table_scope *scope) {
     if (i == ETHD_TABLE_TAPS) fputs(behind, file);
   }
   fputs(ticks, file);
-  bool failed = ferror(file);
-  if (!fclose(file) && !failed) return text;
-  free(text);
-  return NULL;
+  return ethd__print_end(&text);
 }
 
 /* ---- for programs: JSON ---- */
 
-static void put_levels(FILE *file, const char *levels) {
-  fputs(",\n    \"Levels\": {", file);
+static void set(json_t *object, const char *key, json_t *value) {
+  if (json_object_set_new(object, key, value)) ethd__fail_memory();
+}
+
+/* What a column holds; unit "", levels NULL: none. */
+static json_t *entry(const char *meaning, const char *unit, json_t *levels) {
+  return json_pack("{s:s, s:o*, s:o*}", "Description", meaning, "Units", *unit ? json_string(unit) : NULL, "Levels",
+                   levels);
+}
+
+static json_t *levels_of(const char *levels) {
+  json_t *out = json_object();
   for (const char *at = levels; *at;) {
     size_t n = strcspn(at, "|"), name = strcspn(at, "=");
-    fputs(at == levels ? "\n      " : ",\n      ", file);
-    ethd__json_string(file, at, name);
-    fputs(": ", file);
-    ethd__json_string(file, at + name + 1, n - name - 1);
+    char key[24];
+    snprintf(key, sizeof key, "%.*s", (int)name, at);
+    set(out, key, json_stringn(at + name + 1, n - name - 1));
     at += n + (at[n] == '|');
   }
-  fputs("\n    }", file);
+  return out;
 }
 
-static void put_question(FILE *file, const char *column, const ethd__question *q) {
-  char words[256];
-  fprintf(file, ",\n  \"%s\": {\n    \"Description\": ", column);
-  ethd__json_word(file, q->text);
-  if (ethd__question_is_text(q)) {
-    fputs("\n  }", file);
-    return;
-  }
-  fputs(",\n    \"Levels\": {", file);
-  for (int k = 1; k <= (int)ethd__answer_count(q); k++) {
-    ethd__answer_words(q, k, words, sizeof words);
-    fprintf(file, "%s\n      \"%d\": ", k > 1 ? "," : "", k);
-    ethd__json_word(file, words);
-  }
-  fputs("\n    }\n  }", file);
-}
-
-/* Prints the words that a study file lists for a column, each with its meaning between `before` and `after`. */
-static void put_words(FILE *file, const ethd__word_list *list, const char *before, const char *after) {
-  fputs(",\n    \"Levels\": {", file);
+/* The words that a study file lists for a column, each with its meaning between `before` and `after`. */
+static json_t *levels_of_words(const ethd__word_list *list, const char *before, const char *after) {
+  json_t *out = json_object();
   for (size_t i = 0; i < list->count; i++) {
     const char *word = list->word[i];
     bool low = !strcmp(word, "low"), high = !strcmp(word, "high");
-    fprintf(file, "%s\n      \"%s\": \"%s%s%s\"", i ? "," : "", word, before,
-            low    ? "about 0.2"
-            : high ? "about 0.4"
-                   : word,
-            after);
+    set(out, word, json_sprintf("%s%s%s", before, low ? "about 0.2" : high ? "about 0.4" : word, after));
   }
-  fputs("\n    }", file);
+  return out;
 }
 
-static void put_column(FILE *file, const ethd__column *c, const ethd__protocol *p, const char *between) {
-  fprintf(file, "%s\n  \"%s\": {\n    \"Description\": ", between, c->name);
-  ethd__json_word(file, c->meaning);
-  if (*c->unit) {
-    fputs(",\n    \"Units\": ", file);
-    ethd__json_word(file, c->unit);
+static void put_question(void *sidecar, const char *column, const ethd__question *q) {
+  json_t *levels = ethd__question_is_text(q) ? NULL : json_object();
+  char words[256], number[12];
+  for (int k = 1; k <= (int)ethd__answer_count(q); k++) {
+    ethd__answer_words(q, k, words, sizeof words);
+    snprintf(number, sizeof number, "%d", k);
+    set(levels, number, json_string(words));
   }
-  if (c->levels) put_levels(file, c->levels);
-  if (!strcmp(c->name, "transition")) put_words(file, &p->strategies, "the transition law ", "");
-  if (!strcmp(c->name, "speed")) put_words(file, &p->speeds, "", " m/s");
-  fputs("\n  }", file);
+  set(sidecar, column, entry(q->text, "", levels));
 }
 
-static void put_gain(FILE *file, const ethd__axis *axis, const ethd_setup *setup) {
+static void put_columns(json_t *sidecar, ethd__columns columns, const ethd__protocol *p) {
+  for (const ethd__column *c = columns.row; c < columns.row + columns.count; c++) {
+    json_t *levels = c->levels                        ? levels_of(c->levels)
+                     : !strcmp(c->name, "transition") ? levels_of_words(&p->strategies, "the transition law ", "")
+                     : !strcmp(c->name, "speed")      ? levels_of_words(&p->speeds, "", " m/s")
+                                                      : NULL;
+    set(sidecar, c->name, entry(c->meaning, c->unit, levels));
+  }
+}
+
+static void put_gain(json_t *sidecar, const ethd__axis *axis, const ethd_setup *setup) {
   ethd_setup_key key;
   const ethd_param *gain = ethd__gain_of(setup, axis->key, &key);
   char meaning[2 * ETHD_BRIEF_MAX];
   snprintf(meaning, sizeof meaning, "this gain at the point%s%s", gain ? ": " : "", gain ? gain->brief : "");
-  fputs(",\n  ", file);
-  ethd__json_word(file, axis->key);
-  fputs(": {\n    \"Description\": ", file);
-  ethd__json_word(file, meaning);
-  if (gain) {
-    fputs(",\n    \"Units\": ", file);
-    ethd__json_word(file, gain->unit);
-  }
-  put_words(file, &axis->values, "the value ", "");
-  fputs("\n  }", file);
+  set(sidecar, axis->key, entry(meaning, gain ? gain->unit : "", levels_of_words(&axis->values, "the value ", "")));
 }
 
-void ethd__table_sidecar(FILE *file, ethd__study_table table, const ethd__table_scope *scope) {
+static char *text_of(json_t *json) {
+  char *text = json_dumps(json, JSON_INDENT(2));
+  json_decref(json);
+  return text;
+}
+
+char *ethd__table_sidecar(ethd__study_table table, const ethd__table_scope *scope) {
   const ethd__protocol *p = scope->protocol;
-  const ethd__columns part[2] = {ethd__columns_first(table, scope), ethd__columns_of(table)};
-  const char *between = "";
-  putc('{', file);
-  for (int k = 0; k < 2; k++)
-    for (size_t i = 0; i < part[k].count; i++, between = ",") put_column(file, &part[k].row[i], p, between);
+  json_t *sidecar = json_object();
+  put_columns(sidecar, ethd__columns_first(table, scope), p);
+  put_columns(sidecar, ethd__columns_of(table), p);
   for (size_t i = 0; ethd__is_simulated(table, scope) && i < p->axis_count; i++)
-    put_gain(file, &p->axes[i], scope->setup);
-  ethd__columns_asked(table, p, file, put_question);
-  fputs("\n}\n", file);
+    put_gain(sidecar, &p->axes[i], scope->setup);
+  ethd__columns_asked(table, p, sidecar, put_question);
+  return text_of(sidecar);
 }
 
-void ethd__dataset_describe(FILE *file, const ethd__protocol *p) {
-  fputs("{\n  \"Name\": ", file);
-  ethd__json_word(file, p->name);
-  fputs(
-      ",\n  \"DatasetType\": \"raw\",\n  \"Description\": \"A tapping study with an encounter-type haptic display. The "
-      "sidecars follow BIDS; the tables are CSV.\",\n  \"GeneratedBy\": [{\"Name\": \"libethd\", \"Version\": ",
-      file);
-  ethd__json_word(file, ETHD_VERSION);
-  fputs("}]\n}\n", file);
+char *ethd__dataset_describe(const ethd__protocol *p) {
+  return text_of(
+      json_pack("{s:s, s:s, s:s, s:[{s:s, s:s}]}", "Name", p->name, "DatasetType", "raw", "Description",
+                "A tapping study with an encounter-type haptic display. The sidecars follow BIDS; the tables are CSV.",
+                "GeneratedBy", "Name", "libethd", "Version", ETHD_VERSION));
 }

@@ -4,17 +4,15 @@
 
 #include "study/columns.h"
 
-/* Returns the text of README.md, which the caller frees; NULL: no memory. */
+/* Returns the text of README.md, which the caller frees. */
 char *ethd__dictionary(const ethd__table_scope *scope);
 
-/* Writes a JSON object: Description, Units and Levels of each column of a table, as BIDS's sidecars have them. */
-void ethd__table_sidecar(FILE *file, ethd__study_table table, const ethd__table_scope *scope);
+/* Return JSON that the caller frees; NULL: no memory. Of a table Description, Units and Levels of each column, as BIDS's
+   sidecars have them; and dataset_description.json. */
+char *ethd__table_sidecar(ethd__study_table table, const ethd__table_scope *scope);
+char *ethd__dataset_describe(const ethd__protocol *protocol);
 
-/* Writes dataset_description.json. */
-void ethd__dataset_describe(FILE *file, const ethd__protocol *protocol);
-
-/* The survey's questions, our own words for what the paper asks; and the same with their answers as one text. */
+/* The survey's questions, our own words for what the paper asks. */
 extern const ethd__question ethd__paper_questions[3];
-extern const char *const ethd__questions[3];
 
 #endif

@@ -73,18 +73,6 @@ static ethd_status want_movements(wanted_list *list) {
   return status;
 }
 
-/* What `write` prints about the protocol. */
-static void want_printed(wanted_list *list, const char *name, void (*write)(FILE *file, const ethd__protocol *p)) {
-  char *text = NULL;
-  size_t length;
-  FILE *file = open_memstream(&text, &length);
-  if (!file) ethd__fail_memory();
-  write(file, list->parts->protocol);
-  bool failed = ferror(file);
-  if (fclose(file) || failed) ethd__fail_memory();
-  want(list, name, text, length, false);
-}
-
 static ethd__table_scope scope_of(const wanted_list *list) {
   return (ethd__table_scope){list->parts->protocol,
                              list->parts->simulated ? &list->parts->loaded->config->setup : NULL};
@@ -93,16 +81,11 @@ static ethd__table_scope scope_of(const wanted_list *list) {
 static void want_sidecars(wanted_list *list) {
   const ethd__table_scope scope = scope_of(list);
   for (int i = 0; i < ETHD_TABLES; i++) {
-    char *text = NULL, name[40];
-    size_t length;
-    FILE *file = open_memstream(&text, &length);
-    if (!file) ethd__fail_memory();
-    ethd__table_sidecar(file, (ethd__study_table)i, &scope);
-    if (fclose(file)) ethd__fail_memory();
+    char name[40];
     snprintf(name, sizeof name, "%s.json", ethd__table_names[i]);
-    want(list, name, text, length, false);
+    want_text(list, name, ethd__table_sidecar((ethd__study_table)i, &scope), false);
   }
-  want_printed(list, "dataset_description.json", ethd__dataset_describe);
+  want_text(list, "dataset_description.json", ethd__dataset_describe(list->parts->protocol), false);
 }
 
 static ethd_status want_all(wanted_list *list) {
@@ -118,7 +101,8 @@ static ethd_status want_all(wanted_list *list) {
   if (!status) status = want_movements(list);
   if (status) return status;
   want_text(list, "README.md", ethd__dictionary(&scope), false);
-  if (parts->protocol->participants <= ETHD_STUDY_PLANNED) want_printed(list, "orders.csv", ethd__plan_table);
+  if (parts->protocol->participants <= ETHD_STUDY_PLANNED)
+    want_text(list, "orders.csv", ethd__plan_table(parts->protocol), false);
   want_sidecars(list);
   if (parts->protocol->hands != ETHD_HANDS_PEOPLE) return ETHD_OK;
   /* the configuration is copied away from the files that its device needs */
@@ -200,12 +184,12 @@ static bool is_input(const wanted_list *list, const char *folder) {
 /* ---- writing ---- */
 
 static ethd_status write_versions(const wanted_list *list, const char *folder) {
-  char sum[ETHD_SHA256_TEXT], *text = NULL;
+  char sum[ETHD_SHA256_TEXT];
   const ethd_config *config = list->parts->loaded->config;
-  size_t length;
+  ethd__printed text;
   ethd_status status = ethd__folder_hash(folder, sum, list->message);
-  FILE *file = status ? NULL : open_memstream(&text, &length);
-  if (!file) return status ? status : ethd__no_memory(list->message, folder);
+  if (status) return status;
+  FILE *file = ethd__print_begin(&text);
   fprintf(file, "libethd %s\ncompiler %s\nhash %s\n", ETHD_VERSION, __VERSION__, sum);
   fputs("The hash is: cat", file);
   for (size_t i = 0; i < list->count; i++)
@@ -218,11 +202,11 @@ static ethd_status write_versions(const wanted_list *list, const char *folder) {
     status = ethd__sum_of_file(config->plugins[i], sum, list->message);
     fprintf(file, "plugin %s %s\n", sum, config->plugins[i]);
   }
-  if (fclose(file)) status = ethd__no_memory(list->message, folder);
+  ethd__print_end(&text);
   char *path = ethd__folder_path(folder, ETHD_STUDY_VERSIONS);
-  if (!status) status = ethd_text_write(path, text, length, list->message);
+  if (!status) status = ethd_text_write(path, text.text, text.length, list->message);
   free(path);
-  free(text);
+  free(text.text);
   return status;
 }
 

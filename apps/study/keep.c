@@ -37,8 +37,7 @@ static bool every(const char *path, bool (*each)(int folder, const char *name)) 
 
 static bool remove_file(int folder, const char *name) { return unlinkat(folder, name, 0) == 0; }
 
-static bool sync_file(int folder, const char *name) {
-  int fd = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+static bool put_on_disk(int fd) {
   bool done = fd >= 0 && fdatasync(fd) == 0;
   int reason = errno;
   if (fd >= 0) close(fd);
@@ -46,14 +45,11 @@ static bool sync_file(int folder, const char *name) {
   return done;
 }
 
-static bool sync_folder(const char *path) {
-  int fd = ethd__file_open(path, O_RDONLY | O_DIRECTORY, 0);
-  bool done = fd >= 0 && fdatasync(fd) == 0;
-  int reason = errno;
-  if (fd >= 0) close(fd);
-  errno = reason;
-  return done;
+static bool sync_file(int folder, const char *name) {
+  return put_on_disk(openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
 }
+
+static bool sync_folder(const char *path) { return put_on_disk(ethd__file_open(path, O_RDONLY | O_DIRECTORY, 0)); }
 
 static void discard(const char *path) {
   if (every(path, remove_file)) (void)ethd__file_remove_folder(path);

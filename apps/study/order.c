@@ -15,20 +15,12 @@ static void paper(const ethd__protocol *p, uint32_t participant, size_t cell[CEL
   }
 }
 
-static void shuffled(const ethd__protocol *protocol, size_t count, uint32_t participant, size_t cell[CELLS]) {
-  for (size_t i = 0; i < count; i++) cell[i] = i;
-  for (size_t i = count; i-- > 1;) {
-    size_t j = ethd__person_below(protocol->seed, participant, (uint32_t)i, (uint32_t)i + 1), other = cell[j];
-    cell[j] = cell[i];
-    cell[i] = other;
-  }
-}
-
-/* A permutation of 0 .. count-1 by the study's seed; `draw` tells one from another. */
-static void permutation(uint64_t seed, uint32_t draw, size_t count, size_t out[CELLS * 2]) {
+/* A permutation of 0 .. count-1 by the study's seed and a stream: a participant's own, or one that DRAW gives. */
+#define DRAW(number) (UINT32_MAX - (number))
+static void permutation(uint64_t seed, uint32_t stream, size_t count, size_t *out) {
   for (size_t i = 0; i < count; i++) out[i] = i;
   for (size_t i = count; i-- > 1;) {
-    size_t j = ethd__person_below(seed, UINT32_MAX - draw, (uint32_t)i, (uint32_t)i + 1), other = out[j];
+    size_t j = ethd__person_below(seed, stream, (uint32_t)i, (uint32_t)i + 1), other = out[j];
     out[j] = out[i];
     out[i] = other;
   }
@@ -48,10 +40,10 @@ static void latin(const ethd__protocol *p, size_t count, uint32_t participant, s
   size_t strategies = p->strategies.count, speeds = p->speeds.count, rows = count % 2 ? 2 * count : count;
   size_t strategy[CELLS * 2], speed[CELLS * 2], line[CELLS * 2], any[CELLS * 2];
   bool all = count == strategies * speeds;
-  permutation(p->seed, 0, strategies, strategy);
-  permutation(p->seed, 1, speeds, speed);
-  if (!all) permutation(p->seed, 0, count, any);
-  permutation(p->seed, 2 + participant / (uint32_t)rows, rows, line);
+  permutation(p->seed, DRAW(0), strategies, strategy);
+  permutation(p->seed, DRAW(1), speeds, speed);
+  if (!all) permutation(p->seed, DRAW(0), count, any);
+  permutation(p->seed, DRAW(2 + participant / (uint32_t)rows), rows, line);
   size_t row = line[participant % rows];
   for (size_t i = 0; i < count; i++) {
     size_t step = i % 2 ? (i + 1) / 2 : (count - i / 2) % count, number = (step + row) % count;
@@ -96,7 +88,7 @@ size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant, ethd
   if (protocol->order == ETHD_ORDER_PAPER)
     paper(protocol, participant, cell);
   else if (protocol->order == ETHD_ORDER_RANDOM)
-    shuffled(protocol, count, participant, cell);
+    permutation(protocol->seed, participant, count, cell);
   else
     latin(protocol, count, participant, cell);
   for (size_t i = 0; i < count; i++) {

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/cli.h"
 #include "study/columns.h"
 #include "text/text.h"
 
@@ -77,12 +78,6 @@ static bool is_balanced(const ethd__protocol *p, const balance *b) {
   return even;
 }
 
-bool ethd__plan_balanced(const ethd__protocol *p, uint32_t people) {
-  balance b = {0};
-  for (uint32_t i = 0; i < people; i++) count_person(p, i, &b);
-  return is_balanced(p, &b);
-}
-
 /* Returns the next number of participants from `people` on at which everything is balanced, up to FARTHEST times the
    cells; 0 if there is none. */
 static uint32_t next_balanced(const ethd__protocol *p, uint32_t people) {
@@ -97,9 +92,11 @@ static uint32_t next_balanced(const ethd__protocol *p, uint32_t people) {
 
 /* ---- the orders ---- */
 
-void ethd__plan_table(FILE *file, const ethd__protocol *p) {
+char *ethd__plan_table(const ethd__protocol *p) {
   ethd__study_block blocks[ETHD_STUDY_BLOCKS];
   char id[ETHD_STUDY_ID_MAX], *header = ethd__table_header(ETHD_TABLE_ORDERS, p);
+  ethd__printed table;
+  FILE *file = ethd__print_begin(&table);
   fprintf(file, "%s\n", header);
   free(header);
   for (uint32_t person = 0; person < p->participants && person < ETHD_STUDY_PLANNED; person++) {
@@ -109,6 +106,7 @@ void ethd__plan_table(FILE *file, const ethd__protocol *p) {
       fprintf(file, "%s,%zu,%s,%s,%s\n", id, i + 1, blocks[i].training ? "training" : "test",
               p->strategies.word[blocks[i].strategy], p->speeds.word[blocks[i].speed]);
   }
+  return ethd__print_end(&table);
 }
 
 static void print_orders(FILE *file, const ethd__protocol *p) {

@@ -182,20 +182,17 @@ static void print_row(FILE *file, sqlite3_stmt *row) {
 
 static ethd_status print_table(FILE *file, ethd__study_store *store, const ethd__folder *folder,
                                ethd__study_table table, char *message) {
-  char *sql = NULL, *header = folder->simulated ? ethd__simulation_header(&folder->protocol)
-                                                : ethd__table_header(table, &folder->protocol);
-  size_t length;
-  FILE *text = open_memstream(&sql, &length);
-  if (!text) ethd__fail_memory();
-  select_rows[table](text, folder);
-  if (fclose(text)) ethd__fail_memory();
+  char *header =
+      folder->simulated ? ethd__simulation_header(&folder->protocol) : ethd__table_header(table, &folder->protocol);
+  ethd__printed sql;
+  select_rows[table](ethd__print_begin(&sql), folder);
   fprintf(file, "%s\n", header);
   study_view view = {.protocol = &folder->protocol};
   add_functions(store, &view);
-  sqlite3_stmt *row = ethd__store_query(store, sql);
+  sqlite3_stmt *row = ethd__store_query(store, ethd__print_end(&sql));
   while (ethd__store_next(row)) print_row(file, row);
   free(header);
-  free(sql);
+  free(sql.text);
   return ethd__store_end(store, row, message);
 }
 
@@ -203,13 +200,11 @@ ethd_status ethd__tables_of(const ethd__folder *folder, ethd__study_store *store
                             char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ETHD_OK;
   for (int i = 0; i < ETHD_TABLES; i++) {
-    size_t length;
+    ethd__printed table;
     out[i] = NULL;
     if (status || !has(folder, (ethd__study_table)i)) continue;
-    FILE *file = open_memstream(&out[i], &length);
-    if (!file) ethd__fail_memory();
-    status = print_table(file, store, folder, (ethd__study_table)i, message);
-    if (fclose(file)) ethd__fail_memory();
+    status = print_table(ethd__print_begin(&table), store, folder, (ethd__study_table)i, message);
+    out[i] = ethd__print_end(&table);
   }
   return status;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "check/report.h"
+#include "cli/cli.h"
 #include "text/csv.h"
 #include "text/error_text.h"
 #include "text/text.h"
@@ -94,18 +95,14 @@ void ethd__tune_print_worths(FILE *out, const ethd__tune_space *space, const eth
 /* ---- the table ---- */
 
 static char *header_of(const ethd__tune_space *space) {
-  char *text = NULL;
-  size_t length;
-  FILE *f = open_memstream(&text, &length);
-  if (!f) return NULL;
+  ethd__printed text;
+  FILE *f = ethd__print_begin(&text);
   fputs("round,point,keeps,front,chosen", f);
   for (size_t k = 0; k < space->count; k++) fprintf(f, ",%s", space->keys[k].name);
   for (size_t i = 0; i < ETHD_TUNE_FIGURE_COUNT; i++) fprintf(f, ",%s", ethd__tune_figure_names[i]);
   for (int g = 0; g < ETHD_TUNE_GOALS; g++) fprintf(f, ",goal_%s", ethd__tune_goal_names[g]);
   fputs(",settled", f);
-  if (fclose(f) == 0) return text;
-  free(text);
-  return NULL;
+  return ethd__print_end(&text);
 }
 
 static void put_entry(ethd_csv_out *csv, const ethd__tune_space *space, const ethd__tune_entry *e, bool chosen) {
@@ -124,7 +121,6 @@ static void put_entry(ethd_csv_out *csv, const ethd__tune_space *space, const et
 ethd_status ethd__tune_csv(const ethd__tune_search *s, const ethd__tune_entry *choice, const char *path,
                            char message[ETHD_MESSAGE_MAX]) {
   char *header = header_of(s->rig->space);
-  if (!header) return ethd__no_memory(message, path);
   ethd_csv_out *csv = ethd_csv_create(path, header, message);
   free(header);
   if (!csv) return ETHD_E_FILE;

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cli/cli.h"
 #include "text/text.h"
 
 typedef struct rewriting {
@@ -112,10 +113,8 @@ static void finish(rewriting *w) {
 
 char *ethd__tuned_text(const ethd__tune_space *space, const ethd__tune_point *point, const char *head,
                        bool other_folder) {
-  char *out = NULL;
-  size_t length;
-  rewriting w = {.space = space, .other_folder = other_folder};
-  if (!(w.out = open_memstream(&out, &length))) return NULL;
+  ethd__printed out;
+  rewriting w = {.space = space, .other_folder = other_folder, .out = ethd__print_begin(&out)};
   ethd__space_gains(space, point, &w.gains);
   for (const char *line = head; *line; line += strcspn(line, "\n"), line += *line == '\n')
     fprintf(w.out, "# %.*s\n", (int)strcspn(line, "\n"), line);
@@ -125,9 +124,5 @@ char *ethd__tuned_text(const ethd__tune_space *space, const ethd__tune_point *po
     line += n + (line[n] == '\n');
   }
   finish(&w);
-  if (fclose(w.out)) {
-    free(out);
-    return NULL;
-  }
-  return out;
+  return ethd__print_end(&out);
 }
