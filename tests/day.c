@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "ethd/record.h"
 #include "run/session.h"
 #include "unit/draw.h"
@@ -32,12 +33,6 @@ static char message[ETHD_MESSAGE_MAX];
 static int fail(const day *d, const char *what) {
   fprintf(stderr, "session %" PRIu64 ": %s %s\n", d->session, what, message);
   return 1;
-}
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static long resident(void) {
@@ -153,7 +148,8 @@ static int keep_state(const day *d) {
 
 int main(int argc, char **argv) {
   day d = {.folder = argc > 2 ? argv[1] : ""};
-  double hours = argc > 2 ? atof(argv[2]) : 0, most = argc > 3 ? 60 * atof(argv[3]) : INFINITY, began = now();
+  double hours = argc > 2 ? atof(argv[2]) : 0, most = argc > 3 ? 60 * atof(argv[3]) : INFINITY,
+         began = 1e-9 * (double)ethd__clock_now();
   if (!(hours > 0) || strchr(d.folder, '\'')) return fprintf(stderr, "day FOLDER HOURS [MINUTES]\n"), 2;
   char path[512];
   mkdir(d.folder, 0777);
@@ -162,11 +158,12 @@ int main(int argc, char **argv) {
                       &d.swaps, &d.spent) != 5)
     return fprintf(stderr, "%s: not a state\n", path), 1;
   if (state) fclose(state);
-  for (int here = 0; (double)d.session * SESSION < hours * 3600 && now() - began < most; here++) {
-    double start = now();
+  for (int here = 0; (double)d.session * SESSION < hours * 3600 && 1e-9 * (double)ethd__clock_now() - began < most;
+       here++) {
+    double start = 1e-9 * (double)ethd__clock_now();
     if (session(&d, fmin(SESSION, hours * 3600 - (double)d.session * SESSION))) return 1;
     d.session++;
-    d.spent += now() - start;
+    d.spent += 1e-9 * (double)ethd__clock_now() - start;
     if (keep_state(&d)) return fail(&d, "the state can't be kept");
     if (here == 1) d.resident = resident();
     if (here > 1 && resident() > d.resident + 512) return fail(&d, "memory grows");

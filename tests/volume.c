@@ -6,16 +6,11 @@
 #include <string.h>
 #include <time.h>
 
+#include "clock.h"
 #include "unit/mutate.h"
 #include "unit/readers.h"
 
 enum { ROOM = 4096 };
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* A reader's case: a mutation of its seed; of every fourth, a mutation of a mutation. */
 static size_t make(const text_reader *r, uint64_t i, char out[ROOM]) {
@@ -34,17 +29,18 @@ int main(int argc, char **argv) {
   while (r->name && strcmp(r->name, argv[1]) != 0) r++;
   if (argc < 4 || !r->name) return fprintf(stderr, "volume READER FIRST COUNT [SECONDS]\n"), 2;
   uint64_t first = strtoull(argv[2], NULL, 10), end = first + strtoull(argv[3], NULL, 10), i = first, taken = 0;
-  double start = now(), most = argc > 4 ? atof(argv[4]) : 1e18;
+  double start = 1e-9 * (double)ethd__clock_now(), most = argc > 4 ? atof(argv[4]) : 1e18;
   char *text = malloc(ROOM); /* of its own, so that a sanitizer sees its ends */
   if (!text) return 1;
   for (; i < end; i++) {
-    if (i % 1024 == 0 && now() - start > most) break;
+    if (i % 1024 == 0 && 1e-9 * (double)ethd__clock_now() - start > most) break;
     size_t n = make(r, i, text);
     int verdict = r->read(text, n);
     if (verdict < 0) return fprintf(stderr, "%s: input %llu:\n%.*s\n", r->name, (unsigned long long)i, (int)n, text), 1;
     taken += verdict > 0;
   }
   free(text);
-  printf("%llu %llu %.1f\n", (unsigned long long)i, (unsigned long long)taken, now() - start);
+  printf("%llu %llu %.1f\n", (unsigned long long)i, (unsigned long long)taken,
+         1e-9 * (double)ethd__clock_now() - start);
   return 0;
 }

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "servo/device.h"
 #include "servo/mock.h"
 #include "servo/words.h"
@@ -23,12 +23,6 @@ static const ethd_driver *const servo = &ethd_driver_servo;
 static ethd_setup setup;
 static mock drive;
 static char message[ETHD_MESSAGE_MAX], folder[] = "/tmp/ethd-guard-XXXXXX";
-
-static int64_t now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
 
 /* ---- the rules ---- */
 
@@ -130,8 +124,8 @@ static void push(void) {
   if (open_servo(&device) || servo->start(device)) _exit(1);
   for (;;) {
     const ethd_command command = {{0.5, 0.25}, 0, 0};
-    (void)!servo->write(device, now(), &command);
-    (void)!servo->service(device, 0, now());
+    (void)!servo->write(device, ethd__clock_now(), &command);
+    (void)!servo->service(device, 0, ethd__clock_now());
   }
 }
 
@@ -140,7 +134,7 @@ static bool pushes(void) { return drive.words[MOCK_TORQUE1] && drive.words[MOCK_
 static int64_t await(bool (*is)(void), bool wanted) {
   for (int i = 0; i < 30000 && is() != wanted; i++) usleep(1000);
   ck_assert(is() == wanted);
-  return now();
+  return ethd__clock_now();
 }
 
 /* When set-points came, until they are zero: the last one is that zero, the one before the program's last. */
@@ -149,7 +143,7 @@ static mock_act watch(void *user, uint64_t n, int function) {
   (void)user, (void)n;
   if (function == 16 && drive.words[MOCK_TORQUE1]) {
     last_push = latest;
-    latest = now();
+    latest = ethd__clock_now();
   }
   return (mock_act){MOCK_ANSWER, 0, 0};
 }
@@ -222,8 +216,8 @@ START_TEST(test_ended) {
   ck_assert_int_eq(servo->start(device), ETHD_OK);
   for (int i = 0; i < 100; i++) {
     const ethd_command command = {{0.5, 0.25}, 0, 0};
-    (void)!servo->write(device, now(), &command);
-    (void)!servo->service(device, 0, now());
+    (void)!servo->write(device, ethd__clock_now(), &command);
+    (void)!servo->service(device, 0, ethd__clock_now());
   }
   ck_assert(pushes());
   ck_assert_int_eq(servo->stop(device), ETHD_OK);
@@ -241,21 +235,21 @@ START_TEST(test_follows) {
   mock_start(&drive, 0);
   ck_assert_msg(open_servo(&device) == ETHD_OK, "%s", message);
   mock_unplug(&drive);
-  for (int i = 0; i < 20; i++) (void)!servo->service(device, 0, now());
+  for (int i = 0; i < 20; i++) (void)!servo->service(device, 0, ethd__clock_now());
   mock_plug(&drive);
   for (int i = 0; i < 2000 && servo->start(device); i++) usleep(1000);
   ethd__servo_device *d = device;
   for (int i = 0; i < 100; i++) {
     const ethd_command command = {{0.5, 0.25}, 0, 0};
-    (void)!servo->write(device, now(), &command);
-    (void)!servo->service(device, 0, now());
+    (void)!servo->write(device, ethd__clock_now(), &command);
+    (void)!servo->service(device, 0, ethd__clock_now());
   }
   ck_assert(pushes());
   await(is_quiet, true); /* we are silent now */
   await(is_off, true);
   for (int i = 0; i < 2000 && !d->guardian.page->acts; i++) usleep(1000);
   ck_assert_uint_eq(d->guardian.page->acts, 1);
-  (void)!servo->service(device, 0, now());
+  (void)!servo->service(device, 0, ethd__clock_now());
   ck_assert_int_eq(d->link.state, ETHD__SERVO_DOWN);
   ck_assert(strstr(d->link.message, "the guardian has taken the line") || strstr(d->link.message, "refused"));
   int good = ETHD_E_DEVICE; /* and enabling is a way out */

@@ -12,9 +12,9 @@
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "servo/line_speed.h"
 #include "servo/link.h"
 #include "servo/mock.h"
@@ -30,12 +30,6 @@ static mock drive;
 static char message[ETHD_MESSAGE_MAX];
 static const double none[2] = {0, 0};
 
-static int64_t now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
-
 static void open_mock(int is_rtu) {
   mock_start(&drive, is_rtu);
   ck_assert_msg(ethd__servo_map_load("apps/config/plant.map", "plant.map", &map, message) == ETHD_OK, "%s", message);
@@ -50,7 +44,7 @@ static void open_mock(int is_rtu) {
 static void open_link(int is_rtu) {
   open_mock(is_rtu);
   ethd__servo_link_make(&map, &link_);
-  ck_assert_msg(ethd__servo_link_connect(&link_, now()) == ETHD_OK, "%s", link_.message);
+  ck_assert_msg(ethd__servo_link_connect(&link_, ethd__clock_now()) == ETHD_OK, "%s", link_.message);
 }
 
 static void close_link(void) {
@@ -58,7 +52,7 @@ static void close_link(void) {
   mock_stop(&drive);
 }
 
-static ethd_status turn(void) { return ethd__servo_link_turn(&link_, now(), none); }
+static ethd_status turn(void) { return ethd__servo_link_turn(&link_, ethd__clock_now(), none); }
 
 static void turn_until(ethd__servo_state state) {
   for (int i = 0; i < 2000 && link_.state != state; i++) {
@@ -127,7 +121,7 @@ TEST_LOOP(test_own_framing, 0, 2) {
   map.response = 2e-3; /* so that late ones are late, on a busy machine more of them */
   map.drain = 4e-3;
   ethd__servo_link_make(&map, &link_);
-  ck_assert_msg(ethd__servo_link_connect(&link_, now()) == ETHD_OK, "%s", link_.message);
+  ck_assert_msg(ethd__servo_link_connect(&link_, ethd__clock_now()) == ETHD_OK, "%s", link_.message);
   ck_assert_ptr_null(link_.bus.modbus);
   turn_until(ETHD__SERVO_IDENTIFIED);
   drive.act = late_sometimes;
@@ -366,18 +360,18 @@ TEST(test_sequences) {
   open_link(0);
   drive.words[MOCK_STATUS] = 1;
   turn_until(ETHD__SERVO_IDENTIFIED);
-  ck_assert_int_eq(ethd__servo_link_turn(&link_, now(), torque), ETHD_OK);
+  ck_assert_int_eq(ethd__servo_link_turn(&link_, ethd__clock_now(), torque), ETHD_OK);
   ck_assert_uint_eq(drive.words[MOCK_TORQUE1], 0); /* not enabled: zero, whatever was asked for */
-  ethd__servo_link_begin(&link_, ETHD__SERVO_ENABLE, now());
+  ethd__servo_link_begin(&link_, ETHD__SERVO_ENABLE, ethd__clock_now());
   turn_until(ETHD__SERVO_ENABLED);
   ck_assert_uint_eq(drive.words[MOCK_STATUS], 2);
-  ck_assert_int_eq(ethd__servo_link_turn(&link_, now(), torque), ETHD_OK);
+  ck_assert_int_eq(ethd__servo_link_turn(&link_, ethd__clock_now(), torque), ETHD_OK);
   ck_assert_int_eq((int16_t)drive.words[MOCK_TORQUE1], (int)lrint(0.3 / 9.8 / 1e-4));
   ck_assert_int_eq((int16_t)drive.words[MOCK_TORQUE2], (int)lrint(-0.2 / 9.8 / 1e-4));
-  ethd__servo_link_begin(&link_, ETHD__SERVO_DISABLE, now());
+  ethd__servo_link_begin(&link_, ETHD__SERVO_DISABLE, ethd__clock_now());
   ck_assert_int_eq(link_.state, ETHD__SERVO_IDENTIFIED);
   for (int i = 0; i < 50 && link_.sequence >= 0; i++)
-    ck_assert_int_eq(ethd__servo_link_turn(&link_, now(), torque), ETHD_OK);
+    ck_assert_int_eq(ethd__servo_link_turn(&link_, ethd__clock_now(), torque), ETHD_OK);
   ck_assert_int_eq(link_.result, ETHD_OK);
   ck_assert_uint_eq(drive.words[MOCK_STATUS], 0);
   ck_assert_uint_eq(drive.words[MOCK_TORQUE1], 0);
@@ -386,7 +380,7 @@ TEST(test_sequences) {
 
 /* A drive that doesn't come: the step's time-out says which and what it had. */
 TEST(test_step_timeout) {
-  int64_t clock = now();
+  int64_t clock = ethd__clock_now();
   open_link(0);
   turn_until(ETHD__SERVO_IDENTIFIED);
   ethd__servo_link_begin(&link_, ETHD__SERVO_ENABLE, clock);
@@ -412,7 +406,7 @@ TEST(test_other_questions) {
     if (k == 2) map.exchange = ETHD__SERVO_COMBINED;
     ethd__servo_link_make(&map, &link_);
     uint32_t questions = k == 1 ? 3 + link_.plan.read_count : 1;
-    ck_assert_int_eq(ethd__servo_link_connect(&link_, now()), ETHD_OK);
+    ck_assert_int_eq(ethd__servo_link_connect(&link_, ethd__clock_now()), ETHD_OK);
     turn_until(ETHD__SERVO_IDENTIFIED);
     uint64_t before = drive.requests;
     drive.words[MOCK_POSITION1] = 1;

@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "ethd/loop.h"
 #include "servo/mock.h"
 #include "text/text.h"
@@ -25,12 +26,6 @@
 static const ethd_driver *const servo = &ethd_driver_servo;
 static mock drive;
 static char message[ETHD_MESSAGE_MAX], folder[] = "/tmp/ethd-stop-XXXXXX", *registers;
-
-static int64_t now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
 
 static void pause_for(double seconds) { nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * seconds)}, NULL); }
 
@@ -93,7 +88,7 @@ static mock_act act(void *user, uint64_t n, int function) {
   (void)user, (void)n;
   pause_for(0.25 * answer);
   pthread_mutex_lock(&ring.lock);
-  int64_t t = now();
+  int64_t t = ethd__clock_now();
   heed();
   move(t);
   show();
@@ -149,7 +144,7 @@ static void place(const trial *t) {
   ring.exchange = t->exchange;
   ring.sign = t->reversed ? -1 : 1;
   ring.stops = ring.early = ring.dead = false;
-  ring.at = now();
+  ring.at = ethd__clock_now();
   ring.asked = 0;
   ring.q[0] = M_PI / 2, ring.q[1] = 0;
   ring.v[0] = ring.v[1] = ring.torque[0] = ring.torque[1] = 0;
@@ -159,7 +154,8 @@ static void place(const trial *t) {
 
 /* Beats for a while. */
 static void live(ethd_loop *loop, double seconds) {
-  for (int64_t end = now() + (int64_t)(1e9 * seconds); now() < end; pause_for(2e-3)) ethd_loop_beat(loop);
+  for (int64_t end = ethd__clock_now() + (int64_t)(1e9 * seconds); ethd__clock_now() < end; pause_for(2e-3))
+    ethd_loop_beat(loop);
 }
 
 /* Pushes the ring, which moves until the application is gone, and waits for what the guard makes of it. */
@@ -176,7 +172,8 @@ static void run(const trial *t, ethd_loop *loop, double stop_time) {
   pthread_mutex_unlock(&ring.lock);
   if (!t->beats) ethd_loop_raise(loop, ETHD_FAULT_APPLICATION);
   const double most = (t->beats ? HEARTBEAT : 0) + stop_time + 4 * t->exchange + 0.02;
-  for (int64_t end = now() + (int64_t)(1e9 * most); now() < end && ethd_loop_armed(loop);) pause_for(1e-3);
+  for (int64_t end = ethd__clock_now() + (int64_t)(1e9 * most); ethd__clock_now() < end && ethd_loop_armed(loop);)
+    pause_for(1e-3);
   pause_for(4 * t->exchange + 0.02); /* and nothing comes after it */
 }
 

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "clock.h"
 #include "ethd/loop.h"
 #include "unit/device_of.h"
 #include "unit/rig.h"
@@ -15,12 +16,6 @@
 enum { IN_STEP, IN_REHEARSAL, IN_READ, IN_WRITE, PLACES };
 
 static atomic_int place, hangs, safe, safe_before, last_safe, reads, writes, releases;
-
-static int64_t now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
 
 /* Of all threads of this process. */
 static int64_t cpu_time(void) {
@@ -39,8 +34,6 @@ static void hang(void) {
 
 static ethd_sense sense;
 
-static ethd_status dev_start(void *d) { return (void)d, ETHD_OK; }
-
 static ethd_status dev_read(void *d, int64_t now_ns, ethd_sense *out) ETHD_RT {
   (void)d;
   *out = sense;
@@ -58,18 +51,15 @@ static ethd_status dev_write(void *d, int64_t now_ns, const ethd_command *comman
 
 static void dev_safe(void *d) ETHD_RT { (void)d, atomic_store(&safe, 1); }
 static ethd_status dev_stop(void *d) { return (void)d, ETHD_OK; }
-static void dev_close(void *d) { (void)d; }
 
 static const ethd_driver driver = {.size = sizeof driver,
                                    .abi = ETHD_DRIVER_ABI,
                                    .id = "hangs",
                                    .brief = "hangs",
-                                   .start = dev_start,
                                    .read = dev_read,
                                    .write = dev_write,
                                    .safe = dev_safe,
-                                   .stop = dev_stop,
-                                   .close = dev_close};
+                                   .stop = dev_stop};
 
 static ethd_status track(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) {
   int wanted = place == IN_STEP || place == IN_REHEARSAL;
@@ -133,19 +123,19 @@ TEST_LOOP(test_hangs, 0, 2 * PLACES) {
   int in_law = place == IN_STEP || place == IN_REHEARSAL;
   int watched = in_law || _i >= PLACES;
   begin_and_hang(&r, &law, &loop, _i < PLACES ? (double)INFINITY : 0.005);
-  int64_t from = now();
+  int64_t from = ethd__clock_now();
   while (!ethd_loop_hangs(loop, &found)) pause_for(1000000);
   ck_assert_ptr_eq(found, in_law ? &law.law : NULL);
   ck_assert_int_eq(atomic_load(&safe), watched);
   ck_assert_int_eq(ethd_loop_armed(loop), !watched);
   ethd_loop_read(loop, &stats);
   ck_assert_uint_eq(stats.faults[ETHD_FAULT_LOOP], (unsigned)watched);
-  int64_t cpu = cpu_time(), begin_ns = now();
+  int64_t cpu = cpu_time(), begin_ns = ethd__clock_now();
   pause_for(100000000); /* who watches takes no processor while it waits */
-  ck_assert_int_lt(cpu_time() - cpu, (now() - begin_ns) / 2);
+  ck_assert_int_lt(cpu_time() - cpu, (ethd__clock_now() - begin_ns) / 2);
   ethd_loop_stop(loop);
   ethd_status status = ethd_loop_join(loop);
-  double took = 1e-9 * (double)(now() - from);
+  double took = 1e-9 * (double)(ethd__clock_now() - from);
   ck_assert_int_eq(status, in_law ? ETHD_E_LAW : ETHD_E_DEVICE);
   ck_assert_int_eq(ethd_loop_join(loop), status);
   ck_assert_int_eq(ethd_loop_ended(loop), 0);

@@ -74,8 +74,6 @@ static void pass(int place) {
   atomic_store(&d.lived, 1);
 }
 
-static ethd_status dev_start(void *device) { return (void)device, ETHD_OK; }
-
 static ethd_status dev_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
   (void)device;
   *out = d.sense;
@@ -99,18 +97,15 @@ static void dev_safe(void *device) ETHD_RT {
 }
 
 static ethd_status dev_stop(void *device) { return (void)device, ETHD_OK; }
-static void dev_close(void *device) { (void)device; }
 
 static const ethd_driver driver = {.size = sizeof driver,
                                    .abi = ETHD_DRIVER_ABI,
                                    .id = "dies",
                                    .brief = "dies",
-                                   .start = dev_start,
                                    .read = dev_read,
                                    .write = dev_write,
                                    .safe = dev_safe,
-                                   .stop = dev_stop,
-                                   .close = dev_close};
+                                   .stop = dev_stop};
 
 static ethd_status track(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) ETHD_RT {
   pass(IN_LAW);

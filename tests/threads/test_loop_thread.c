@@ -116,7 +116,6 @@ static void dev_safe(void *d) ETHD_RT {
   if (opened_by && opened_by != getpid()) _exit(9);
 }
 static ethd_status dev_stop(void *d) { return (void)d, ETHD_OK; }
-static void dev_close(void *d) { (void)d; }
 
 static const ethd_driver driver = {.size = sizeof driver,
                                    .abi = ETHD_DRIVER_ABI,
@@ -128,8 +127,7 @@ static const ethd_driver driver = {.size = sizeof driver,
                                    .units = dev_units,
                                    .service = dev_service,
                                    .safe = dev_safe,
-                                   .stop = dev_stop,
-                                   .close = dev_close};
+                                   .stop = dev_stop};
 
 static rig r;
 static device d;

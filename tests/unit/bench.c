@@ -27,7 +27,6 @@ static ethd_status dev_service(void *d, uint32_t unit, int64_t now) {
   return (void)unit, (void)now, ((device *)d)->services++, ETHD_OK;
 }
 static ethd_status dev_stop(void *d) { return (void)d, ETHD_OK; }
-static void dev_close(void *d) { (void)d; }
 
 static const ethd_driver driver = {.size = sizeof driver,
                                    .abi = ETHD_DRIVER_ABI,
@@ -39,8 +38,7 @@ static const ethd_driver driver = {.size = sizeof driver,
                                    .units = dev_units,
                                    .service = dev_service,
                                    .safe = dev_safe,
-                                   .stop = dev_stop,
-                                   .close = dev_close};
+                                   .stop = dev_stop};
 
 void bench_open(bench *b) {
   memset(b, 0, sizeof *b);

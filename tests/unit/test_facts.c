@@ -34,6 +34,35 @@ static void open_spied(rig *r) {
 
 static motion finger_at(double x) { return (motion){{0.25, 0.25}, {0, 0}, {x, 0.25}, {0, 0}}; }
 
+/* A serial and a parallel arm with the same links feel the same mass along any n. */
+TEST_LOOP(test_mass, 0, 2) {
+  double mass[2];
+  for (int serial = 0; serial < 2; serial++) {
+    rig r;
+    rig_open(&r, _i ? "halfplane -0.6 -0.8 -0.33\n" : RIG_WALL);
+    r.setup.arm.mechanism = serial ? ETHD_ARM_SERIAL : ETHD_ARM_PARALLEL;
+    ethd_setup_transition(&r.setup, &spying);
+    r.setup.dynamics = (ethd_dynamics){{0.2, 0.3}, 0.4, 1.5, 2e-4};
+    r.setup.limits.torque = 1.25;
+    rig_start(&r);
+    motion m = {{0.25, 0.25}, {0, 0}, {0.25, 0.25}, {0, 0}};
+    rig_step(&r, &m);
+    mass[serial] = seen.mass;
+    ck_assert(seen.delay == 2e-4 && seen.ring_radius == 0.012 && seen.finger_age == 0);
+    ck_assert(isnan(seen.finger_a));
+    if (!_i && !serial) { /* joint 1 alone moves x, by 0.25 m/rad */
+      ck_assert_double_eq_tol(seen.force, 5, 1e-9);
+      ck_assert_double_eq_tol(seen.friction, 0.4, 1e-9);
+      ck_assert_double_eq_tol(seen.viscous, 1.5, 1e-9);
+    }
+    rig_close(&r);
+  }
+  /* 1/m = n_x^2/m_x + n_y^2/m_y, as link angles of 90 and 0 deg part x and y */
+  double expected = _i ? 1 / (0.36 / 0.2 + 0.64 / 0.3) : 0.2;
+  ck_assert_double_eq_tol(mass[0], expected, 1e-9);
+  ck_assert_double_eq_tol(mass[1], expected, 1e-9);
+}
+
 /* From no torque, one tick's worth of the rate; then what stands is added where it already pushes out of the wall, and
    has to be undone where it pushes in. */
 TEST(test_rate) {

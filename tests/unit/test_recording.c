@@ -1,50 +1,16 @@
 /* Recordings: a folder that replays bit for bit, and says where it doesn't. */
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include "denormals.h"
 #include "draw.h"
-#include "ethd/record.h"
 #include "record/recording_parts.h"
-#include "text/text.h"
-#include "unit/suite.h"
+#include "unit/recorded.h"
 
 #define CONFIG                                                                                          \
   "# a wall\n[scene]\nfile = walls.scene ; the left one\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n" \
   "[velocity]\nmethod = kalman"
 
-static char message[ETHD_MESSAGE_MAX];
-static char folder[] = "/tmp/ethd-recording-XXXXXX", recording_folder[64];
-static ethd_config *config;
-
-static void write_text(const char *where, const char *name, const char *text) {
-  char path[256];
-  snprintf(path, sizeof path, "%s/%s", where, name);
-  ck_assert_msg(ethd_text_write(path, text, strlen(text), message) == ETHD_OK, "%s", message);
-}
-
-static void set_up(void) {
-  char path[128];
-  (void)ethd__denormals_flush();
-  ck_assert_ptr_nonnull(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/c.ini", folder);
-  snprintf(recording_folder, sizeof recording_folder, "%s/rec", folder);
-  write_text(folder, "walls.scene", "halfplane -1 0 -0.238\n");
-  write_text(folder, "c.ini", CONFIG);
-  ck_assert_msg(ethd_config_load(path, &config, message) == ETHD_OK, "%s", message);
-}
-
-static void tear_down(void) {
-  char command[64];
-  ethd_config_free(config);
-  snprintf(command, sizeof command, "rm -r %s", folder);
-  ck_assert_int_eq(system(command), 0);
-  strcpy(folder, "/tmp/ethd-recording-XXXXXX");
-}
+static void set_up(void) { recorded_set_up(CONFIG, "walls.scene", "halfplane -1 0 -0.238\n"); }
 
 /* ---- a program that records ---- */
 
@@ -141,7 +107,7 @@ static void record(void) {
 TEST(test_replays_to_the_bit) {
   char says[256];
   record();
-  ck_assert_msg(ethd_recording_verify(recording_folder, true, NULL, message) == ETHD_OK, "%s", message);
+  ck_assert_msg(verify() == ETHD_OK, "%s", message);
   snprintf(says, sizeof says, "%s: 700 ticks, equal to the bit", recording_folder);
   ck_assert_str_eq(message, says);
   ck_assert_int_eq(ethd_recording_verify(recording_folder, true, &(int){1}, message), ETHD_E_UNFINISHED);
@@ -184,70 +150,29 @@ static void make_older(void) {
 TEST(test_older_recording) {
   record();
   make_older();
-  ck_assert_msg(ethd_recording_verify(recording_folder, true, NULL, message) == ETHD_OK, "%s", message);
-  ck_assert_msg(strstr(message, "rec: 700 ticks, equal to the bit") != NULL, "%s", message);
-}
-
-static char *read_text(const char *name) {
-  char path[256], *text;
-  size_t length;
-  snprintf(path, sizeof path, "%s/%s", recording_folder, name);
-  ck_assert_msg(ethd_text_read(path, 1000000, &text, &length, message) == ETHD_OK, "%s", message);
-  return text;
+  replays("rec: 700 ticks, equal to the bit");
 }
 
 TEST(test_files) {
   record();
-  char *text = read_text("config.ini");
-  ck_assert_str_eq(text, "# a wall\n[scene]\nfile = scene.scene\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n"
-                         "[velocity]\nmethod = kalman\n");
-  free(text);
-  text = read_text("scene.scene");
-  ck_assert_str_eq(text, "halfplane -1 0 -0.238\n");
-  free(text);
-  text = read_text("events.csv");
-  ck_assert_str_eq(text, "row,kind,detail\n100,start,\"tap 1, \"\"again\"\"\"\n200,transition,smooth\n"
-                         "250,set,contact.k_e 2000\n250,set,contact.b_e 30\n300,transition,offset\n"
-                         "400,setup,offset\n400,set,limits.torque 0.5\n600,set,limits.speed 0.01\n"
-                         "620,fault,the ring is too fast\n640,set,limits.speed 5\n640,clear,\n700,end,closed\n");
-  free(text);
-}
-
-/* Row, field and index of a number that was changed. */
-static void flip(size_t row, size_t offset, unsigned char mask) {
-  char path[128];
-  snprintf(path, sizeof path, "%s/tick.npy", recording_folder);
-  FILE *file = fopen(path, "r+b");
-  ck_assert_ptr_nonnull(file);
-  unsigned char head[10], byte;
-  ck_assert_uint_eq(fread(head, 1, 10, file), 10);
-  long at = 10 + head[8] + 256 * head[9] + (long)(row * sizeof(ethd_trace) + offset);
-  ck_assert(fseek(file, at, SEEK_SET) == 0 && fread(&byte, 1, 1, file) == 1);
-  byte ^= mask;
-  ck_assert(fseek(file, at, SEEK_SET) == 0 && fwrite(&byte, 1, 1, file) == 1 && fclose(file) == 0);
+  holds("config.ini", "# a wall\n[scene]\nfile = scene.scene\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n"
+                      "[velocity]\nmethod = kalman\n");
+  holds("scene.scene", "halfplane -1 0 -0.238\n");
+  holds("events.csv", "row,kind,detail\n100,start,\"tap 1, \"\"again\"\"\"\n200,transition,smooth\n"
+                      "250,set,contact.k_e 2000\n250,set,contact.b_e 30\n300,transition,offset\n"
+                      "400,setup,offset\n400,set,limits.torque 0.5\n600,set,limits.speed 0.01\n"
+                      "620,fault,the ring is too fast\n640,set,limits.speed 5\n640,clear,\n700,end,closed\n");
 }
 
 TEST(test_says_what_differs) {
-  static const struct {
-    size_t row, offset;
-    const char *says;
-  } changes[] = {{350, offsetof(ethd_trace, tau) + 8, "tick 350: tau[1]: recorded "},
-                 {120, offsetof(ethd_trace, beta), "tick 120: beta: recorded "},
-                 {0, offsetof(ethd_trace, state), "tick 0: state: recorded 1, replayed 0"},
-                 {699, offsetof(ethd_trace, v), "tick 699: v[0]: recorded "}};
-  char says[256];
+  static const flipped changes[] = {{350, offsetof(ethd_trace, tau) + 8, "rec: tick 350: tau[1]: recorded "},
+                                    {120, offsetof(ethd_trace, beta), "rec: tick 120: beta: recorded "},
+                                    {0, offsetof(ethd_trace, state), "rec: tick 0: state: recorded 1, replayed 0"},
+                                    {699, offsetof(ethd_trace, v), "rec: tick 699: v[0]: recorded "}};
   record();
-  for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
-    flip(changes[i].row, changes[i].offset, 1);
-    ck_assert_int_eq(ethd_recording_verify(recording_folder, true, NULL, message), ETHD_E_DIFFERS);
-    snprintf(says, sizeof says, "%s: %s", recording_folder, changes[i].says);
-    ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s", message);
-    flip(changes[i].row, changes[i].offset, 1);
-  }
-  ck_assert_int_eq(ethd_recording_verify(recording_folder, true, NULL, message), ETHD_OK);
+  bits_matter(sizeof(ethd_trace), changes, sizeof changes / sizeof *changes);
 }
 
-/* Each event matters: without it, or a row late, the replay differs. */
 TEST(test_events_matter) {
   static const char *const changes[][2] = {{"100,start,", "101,start,"},
                                            {"200,transition,smooth", "200,fault,smooth"},
@@ -257,16 +182,7 @@ TEST(test_events_matter) {
                                            {"400,set,limits.torque 0.5", "400,fault,"},
                                            {"640,clear,", "640,fault,"}};
   record();
-  char *text = read_text("events.csv");
-  for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
-    char changed[2048];
-    char *at = strstr(text, changes[i][0]);
-    ck_assert_ptr_nonnull(at);
-    snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, changes[i][1], at + strlen(changes[i][0]));
-    write_text(recording_folder, "events.csv", changed);
-    ck_assert_msg(ethd_recording_verify(recording_folder, true, NULL, message) < 0, "%s passed", changes[i][1]);
-  }
-  free(text);
+  events_matter(changes, sizeof changes / sizeof *changes);
 }
 
 /* A program that was killed leaves no end; a tick.npy that was cut isn't what the end says. */
@@ -286,7 +202,7 @@ TEST(test_the_end_counts) {
   for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
     snprintf(changed, sizeof changed, "%.*s%s", (int)(end - text), text, ends[i].end);
     write_text(recording_folder, "events.csv", changed);
-    ck_assert_int_eq(ethd_recording_verify(recording_folder, true, NULL, message), ends[i].status);
+    ck_assert_int_eq(verify(), ends[i].status);
     ck_assert_msg(strstr(message, ends[i].says) != NULL, "%s", message);
   }
   free(text);
@@ -306,7 +222,7 @@ TEST(test_heat) {
     ethd_control_set_heat(p.control, heat);
     run(&p, 100);
     ck_assert_int_eq(ethd_recording_close(p.recording, message), ETHD_OK);
-    ck_assert_int_eq(ethd_recording_verify(recording_folder, true, NULL, message), told ? ETHD_OK : ETHD_E_DIFFERS);
+    ck_assert_int_eq(verify(), told ? ETHD_OK : ETHD_E_DIFFERS);
   }
   ethd_control_destroy(p.control);
 }
@@ -329,7 +245,7 @@ TEST(test_bad_events) {
   record();
   for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
     write_text(recording_folder, "events.csv", bads[i][0]);
-    ck_assert_int_lt(ethd_recording_verify(recording_folder, true, NULL, message), 0);
+    ck_assert_int_lt(verify(), 0);
     snprintf(says, sizeof says, "%s/%s", recording_folder, bads[i][1]);
     ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s\nsays %s", bads[i][0], message);
   }
@@ -338,13 +254,13 @@ TEST(test_bad_events) {
 TEST(test_missing_files) {
   static const char *const names[] = {"config.ini", "tick.npy", "events.csv", "scene.scene"};
   char from[128], to[128];
-  ck_assert_int_lt(ethd_recording_verify(recording_folder, true, NULL, message), 0);
+  ck_assert_int_lt(verify(), 0);
   record();
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
     snprintf(from, sizeof from, "%s/%s", recording_folder, names[i]);
     snprintf(to, sizeof to, "%s/hidden", folder);
     ck_assert_int_eq(rename(from, to), 0);
-    ck_assert_int_lt(ethd_recording_verify(recording_folder, true, NULL, message), 0);
+    ck_assert_int_lt(verify(), 0);
     ck_assert_msg(strstr(message, names[i]) && strstr(message, "No such file"), "%s", message);
     ck_assert_int_eq(rename(to, from), 0);
   }
@@ -361,4 +277,4 @@ TEST(test_no_place) {
   ck_assert_str_eq(message, "/nowhere/rec: No such file or directory");
 }
 
-FIXTURE(set_up, tear_down)
+FIXTURE(set_up, recorded_tear_down)

@@ -1,52 +1,12 @@
 /* Recordings of the front in space: they replay to the bit through sense and near surfaces alone, and say where they don't. */
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
-#include "denormals.h"
-#include "ethd/record.h"
-#include "text/text.h"
-#include "unit/suite.h"
+#include "unit/recorded.h"
 
-static char message[ETHD_MESSAGE_MAX];
-static char folder[] = "/tmp/ethd-recording-XXXXXX", recording_folder[64];
-static ethd_config *config;
+#define SOLIDS "material soft k_e=900\nhalfspace 1 0 0 0.2\nsphere 0.2 0.1 0 0.05 material=soft\n"
+#define CONFIG(file) "[space]\nacceleration = 20\nspeed = 3\n[scene]\nfile = " file "\n[ability]\ndelay = 0.005\n"
 
-static void write_text(const char *where, const char *name, const char *text) {
-  char path[256];
-  snprintf(path, sizeof path, "%s/%s", where, name);
-  ck_assert_msg(ethd_text_write(path, text, strlen(text), message) == ETHD_OK, "%s", message);
-}
-
-static char *read_text(const char *name) {
-  char path[256], *text;
-  size_t length;
-  snprintf(path, sizeof path, "%s/%s", recording_folder, name);
-  ck_assert_msg(ethd_text_read(path, 1000000, &text, &length, message) == ETHD_OK, "%s", message);
-  return text;
-}
-
-static void set_up(void) {
-  char path[128];
-  (void)ethd__denormals_flush();
-  ck_assert_ptr_nonnull(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/c.ini", folder);
-  snprintf(recording_folder, sizeof recording_folder, "%s/rec", folder);
-  write_text(folder, "a.solids", "material soft k_e=900\nhalfspace 1 0 0 0.2\nsphere 0.2 0.1 0 0.05 material=soft\n");
-  write_text(folder, "c.ini",
-             "[space]\nacceleration = 20\nspeed = 3\n[scene]\nfile = a.solids\n[ability]\ndelay = 0.005\n");
-  ck_assert_msg(ethd_config_load(path, &config, message) == ETHD_OK, "%s", message);
-}
-
-static void tear_down(void) {
-  char command[64];
-  ethd_config_free(config);
-  snprintf(command, sizeof command, "rm -r %s", folder);
-  ck_assert_int_eq(system(command), 0);
-  strcpy(folder, "/tmp/ethd-recording-XXXXXX");
-}
+static void set_up(void) { recorded_set_up(CONFIG("a.solids"), "a.solids", SOLIDS); }
 
 /* ---- a program that records ---- */
 
@@ -153,59 +113,29 @@ static void record(void) {
 /* ---- tests ---- */
 
 TEST(test_replays_to_the_bit) {
-  char says[256];
   record();
-  ck_assert_msg(ethd_recording_verify(recording_folder, false, NULL, message) == ETHD_OK, "%s", message);
-  snprintf(says, sizeof says, "%s: 2600 ticks, equal to the bit", recording_folder);
-  ck_assert_str_eq(message, says);
+  replays("rec: 2600 ticks, equal to the bit");
 }
 
 TEST(test_files) {
   record();
-  char *text = read_text("config.ini");
-  ck_assert_str_eq(text,
-                   "[space]\nacceleration = 20\nspeed = 3\n[scene]\nfile = scene.scene\n[ability]\ndelay = 0.005\n");
-  free(text);
-  text = read_text("scene.scene");
-  ck_assert_str_eq(text, "material soft k_e=900\nhalfspace 1 0 0 0.2\nsphere 0.2 0.1 0 0.05 material=soft\n");
-  free(text);
-}
-
-/* Flips a bit of a byte of a row. */
-static void flip(size_t row, size_t offset) {
-  char path[128];
-  snprintf(path, sizeof path, "%s/tick.npy", recording_folder);
-  FILE *file = fopen(path, "r+b");
-  ck_assert_ptr_nonnull(file);
-  unsigned char head[10], byte;
-  ck_assert_uint_eq(fread(head, 1, 10, file), 10);
-  long at = 10 + head[8] + 256 * head[9] + (long)(row * sizeof(ethd_space_trace) + offset);
-  ck_assert(fseek(file, at, SEEK_SET) == 0 && fread(&byte, 1, 1, file) == 1);
-  byte ^= 1;
-  ck_assert(fseek(file, at, SEEK_SET) == 0 && fwrite(&byte, 1, 1, file) == 1 && fclose(file) == 0);
+  holds("config.ini", CONFIG("scene.scene"));
+  holds("scene.scene", SOLIDS);
 }
 
 /* A number of the trace, of the sense and of a surface: none may change by a bit. */
 TEST(test_says_what_differs) {
-  static const struct {
-    size_t row, offset;
-    const char *says;
-  } changes[] = {{500, offsetof(ethd_space_trace, command) + 8, "tick 500: command[1]: recorded "},
-                 {700, offsetof(ethd_space_trace, sense.finger), "tick 700: xf[0]: recorded "},
-                 {300, offsetof(ethd_space_trace, near), "tick 300: "},
-                 {200, offsetof(ethd_space_trace, state), "tick 200: state: recorded "}};
+  static const flipped changes[] = {{500, offsetof(ethd_space_trace, command) + 8, "tick 500: command[1]: recorded "},
+                                    {700, offsetof(ethd_space_trace, sense.finger), "tick 700: xf[0]: recorded "},
+                                    {300, offsetof(ethd_space_trace, near), "tick 300: "},
+                                    {200, offsetof(ethd_space_trace, state), "tick 200: state: recorded "}};
   record();
-  for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
-    flip(changes[i].row, changes[i].offset);
-    ck_assert_int_eq(ethd_recording_verify(recording_folder, false, NULL, message), ETHD_E_DIFFERS);
-    ck_assert_msg(strstr(message, changes[i].says) != NULL, "%s", message);
-    flip(changes[i].row, changes[i].offset);
-  }
-  flip(100, offsetof(ethd_space_trace, overflow)); /* what found no room isn't there to be counted again */
-  ck_assert_msg(ethd_recording_verify(recording_folder, false, NULL, message) == ETHD_OK, "%s", message);
+  bits_matter(sizeof(ethd_space_trace), changes, sizeof changes / sizeof *changes);
+  /* what found no room isn't there to be counted again */
+  flip(sizeof(ethd_space_trace), 100, offsetof(ethd_space_trace, overflow));
+  ck_assert_msg(verify() == ETHD_OK, "%s", message);
 }
 
-/* Each event matters: without it, or a row late, the replay differs. */
 TEST(test_events_matter) {
   static const char *const changes[][2] = {
       {"800,start,", "801,start,"},
@@ -220,24 +150,15 @@ TEST(test_events_matter) {
       {"2500,start,enabled", "2500,fault,"},
   };
   record();
-  char *text = read_text("events.csv");
-  for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
-    char changed[2048];
-    char *at = strstr(text, changes[i][0]);
-    ck_assert_msg(at != NULL, "%s", changes[i][0]);
-    snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, changes[i][1], at + strlen(changes[i][0]));
-    write_text(recording_folder, "events.csv", changed);
-    ck_assert_msg(ethd_recording_verify(recording_folder, false, NULL, message) < 0, "%s passed", changes[i][1]);
-  }
-  free(text);
+  events_matter(changes, sizeof changes / sizeof *changes);
 }
 
 /* A recording of the plane isn't one of space. */
 TEST(test_other_front) {
   record();
   write_text(recording_folder, "config.ini", "[arm]\n");
-  ck_assert_int_eq(ethd_recording_verify(recording_folder, false, NULL, message), ETHD_E_SYNTAX);
+  ck_assert_int_eq(verify(), ETHD_E_SYNTAX);
   ck_assert_msg(strstr(message, "tick.npy: other columns than those of this version of libethd"), "%s", message);
 }
 
-FIXTURE(set_up, tear_down)
+FIXTURE(set_up, recorded_tear_down)

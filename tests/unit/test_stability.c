@@ -24,14 +24,19 @@ static void check_near(double value, double expected, double share, const char *
   ck_assert_msg(fabs(value - expected) <= share * fabs(expected), "%s: %.10g, not %.10g", what, value, expected);
 }
 
+/* The boundary for the backward difference and n whole ticks of delay, in closed form, 0 < th <= pi / (2 (n + 1)). */
+static void boundary(int n, double th, double *stiffness, double *damping) {
+  double t = tan(th / 2), k = 4 * t * t * cos((n + 1) * th);
+  *stiffness = k * M / (T * T);
+  *damping = (2 * t * sin((n + 1) * th) - k / 2) * M / T;
+}
+
 /* The curve's own points: a gain over it is unstable, under it stable, within 0.5 %. */
 TEST(test_boundary) {
   for (int n = 0; n <= 4; n++)
     for (int i = 1; i < 16; i++) {
-      double th = M_PI / (2 * (n + 1)) * i / 16, t = tan(th / 2), k, b;
-      ethd__sampled_boundary(M, T, n, th, &k, &b);
-      check_near(k * T * T / M, 4 * t * t * cos((n + 1) * th), 1e-12, "K of the page");
-      check_near(b * T / M, 2 * t * sin((n + 1) * th) - k * T * T / (2 * M), 1e-12, "B of the page");
+      double k, b;
+      boundary(n, M_PI / (2 * (n + 1)) * i / 16, &k, &b);
       ethd__sampled_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, k, b);
       l.delay = n;
       check_near(ethd__sampled_radius(&l), 1, 1e-6, "radius on the curve");
@@ -47,14 +52,15 @@ TEST(test_published_numbers) {
     double most = 0;
     for (int i = 1; i <= 1000; i++) {
       double k, b;
-      ethd__sampled_boundary(M, T, n, M_PI / (2 * (n + 1)) * i / 1000, &k, &b);
+      boundary(n, M_PI / (2 * (n + 1)) * i / 1000, &k, &b);
       most = fmax(most, k);
     }
     check_near(most * T * T / M, largest_k[n], 2e-3, "largest K");
-    check_near(ethd__sampled_damping_free(M, T, n), largest_b[n] * M / T, 1e-3, "largest B");
+    const double free = 2 * M / T * tan(M_PI / (4 * (n + 1)));
+    check_near(free, largest_b[n] * M / T, 1e-3, "largest B");
     ethd__sampled_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 0, 1);
     l.delay = n;
-    check_near(ethd__sampled_damping_max(&l), 2 * M / T * tan(M_PI / (4 * (n + 1))), 1e-3, "largest B of the loop");
+    check_near(ethd__sampled_damping_max(&l), free, 1e-3, "largest B of the loop");
   }
   ethd__sampled_loop l = loop_of(ETHD_VELOCITY_LSQ, 0, 100); /* a 15 ms window: unstable under 0.4 kg */
   l.p[0] = 16;
