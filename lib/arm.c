@@ -137,17 +137,10 @@ const char *ethd_arm_name(ethd_mechanism mechanism) { return (unsigned)mechanism
 
 void ethd__arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) { rows[arm->mechanism].pose(arm, q, out); }
 
-void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) {
-  const uint64_t callers = ethd__fp_take();
-  ethd__arm_pose(arm, q, out);
-  ethd__fp_give(callers);
-}
+void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) { ETHD__FP_DO(ethd__arm_pose(arm, q, out)); }
 
 ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = rows[arm->mechanism].angles(arm, x, elbow, q);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, rows[arm->mechanism].angles(arm, x, elbow, q));
 }
 
 void ethd_arm_reach(const ethd_arm *arm, double *inner, double *outer) {

@@ -85,4 +85,19 @@ static inline void ethd__fp_give(uint64_t callers) ETHD_RT {
 
 #define ETHD__FP_APART __attribute__((noinline))
 
+/* The body of a function that makes this call in the library's mode, and returns what it gives. */
+#define ETHD__FP_RETURN(type, call)           \
+  do {                                        \
+    const uint64_t callers = ethd__fp_take(); \
+    const type given = call;                  \
+    ethd__fp_give(callers);                   \
+    return given;                             \
+  } while (0)
+#define ETHD__FP_DO(call)                     \
+  do {                                        \
+    const uint64_t callers = ethd__fp_take(); \
+    call;                                     \
+    ethd__fp_give(callers);                   \
+  } while (0)
+
 #endif

@@ -93,6 +93,12 @@ void ethd__fail(int code, const char *format, ...) {
 
 void ethd__fail_memory(void) { ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY)); }
 
+char *ethd__folder_path(const char *folder, const char *name) {
+  char *path = ethd__path_join(folder, name);
+  if (!path) ethd__fail_memory();
+  return path;
+}
+
 FILE *ethd__print_begin(ethd__printed *p) {
   p->file = open_memstream(&p->text, &p->length);
   if (!p->file) ethd__fail_memory();

@@ -35,6 +35,9 @@ _Noreturn void ethd__fail(int code, const char *format, ...) __attribute__((form
 /* Does the same for "no memory". */
 _Noreturn void ethd__fail_memory(void);
 
+/* Returns folder/name, which the caller frees; exits 1 without memory. */
+char *ethd__folder_path(const char *folder, const char *name);
+
 /* A text that is printed into memory; its end returns it, which the caller frees. Exit 1 without memory. */
 typedef struct ethd__printed {
   FILE *file;

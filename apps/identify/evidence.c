@@ -17,12 +17,6 @@
 #define DEEP 3    /* levels of subfolders that are searched for recordings */
 #define SOFT 0.15 /* s: longest soft start of the torque; a recording doesn't tell whether there was one */
 
-static char *join(const char *folder, const char *name) {
-  char *path = ethd__path_join(folder, name);
-  if (!path) ethd__fail_memory();
-  return path;
-}
-
 /* ---- one recording ---- */
 
 /* Marks the ticks at which the device applied the row's torque: not after a stop or a fault, and not during a soft start. */
@@ -77,7 +71,8 @@ static void remember(ethd__evidence *e, const char *folder) {
 }
 
 static ethd_status take(ethd__evidence *e, const char *folder, const ethd_config *config, char *message) {
-  char *ticks = join(folder, ETHD_RECORDING_TICK), *path = join(folder, ETHD_RECORDING_EVENTS);
+  char *ticks = ethd__folder_path(folder, ETHD_RECORDING_TICK),
+       *path = ethd__folder_path(folder, ETHD_RECORDING_EVENTS);
   void *rows = NULL;
   size_t count = 0;
   ethd__record_events events = {0};
@@ -98,7 +93,7 @@ static ethd_status take(ethd__evidence *e, const char *folder, const ethd_config
 }
 
 static ethd_status add_recording(ethd__evidence *e, const char *folder, char *message) {
-  char *path = join(folder, ETHD_RECORDING_CONFIG);
+  char *path = ethd__folder_path(folder, ETHD_RECORDING_CONFIG);
   ethd_config *config = NULL;
   ethd_status status = (e->plugins ? ethd_config_load : ethd_config_load_received)(path, &config, message);
   if (!status) ethd__need_plane(config);
@@ -111,7 +106,7 @@ static ethd_status add_recording(ethd__evidence *e, const char *folder, char *me
 /* ---- folders ---- */
 
 static bool is_recording(const char *folder) {
-  char *path = join(folder, ETHD_RECORDING_TICK);
+  char *path = ethd__folder_path(folder, ETHD_RECORDING_TICK);
   bool found = ethd__file_taken(path);
   free(path);
   return found;
@@ -127,7 +122,7 @@ static ethd_status add_below(ethd__evidence *e, const char *folder, int deep, ch
   int n = fd < 0 ? -1 : scandirat(fd, ".", &entries, is_visible, alphasort);
   if (fd >= 0) close(fd);
   for (int i = 0; i < n; i++) {
-    char *path = join(folder, entries[i]->d_name);
+    char *path = ethd__folder_path(folder, entries[i]->d_name);
     if (!status && (entries[i]->d_type == DT_DIR || is_recording(path))) status = add_below(e, path, deep - 1, message);
     free(path);
     free(entries[i]);

@@ -15,12 +15,6 @@
 static const char *const hashed[] = {ETHD_STUDY_FILE, ETHD_RECORDING_CONFIG, ETHD_RECORDING_SCENE, ETHD_STUDY_PLANT,
                                      ETHD_STUDY_CONDITIONS_FILE};
 
-char *ethd__folder_path(const char *folder, const char *name) {
-  char *path = ethd__path_join(folder, name);
-  if (!path) ethd__fail_memory();
-  return path;
-}
-
 /* folder/name where there is such a file or folder, else NULL. */
 static char *existing(const char *folder, const char *name) {
   char *path = ethd__folder_path(folder, name);

@@ -10,6 +10,7 @@
 #ifndef ETHD__APPS_STUDY_FOLDER_H
 #define ETHD__APPS_STUDY_FOLDER_H
 
+#include "cli/cli.h"
 #include "study/protocol.h"
 #include "tap/load.h"
 #include "text/sha256.h"
@@ -77,8 +78,5 @@ uint32_t ethd__folder_simulated(const char *folder);
 /* Gives the SHA-256 of the folder's inputs, one after another. */
 ETHD_MUST_CHECK ethd_status ethd__folder_hash(const char *folder, char out[ETHD_SHA256_TEXT],
                                               char message[ETHD_MESSAGE_MAX]);
-
-/* Returns folder/name, which the caller frees; exit 1 without memory. */
-char *ethd__folder_path(const char *folder, const char *name);
 
 #endif

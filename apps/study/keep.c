@@ -16,10 +16,6 @@
 
 #define FRESH ".new"
 
-static ethd_status refuse(const char *path, char *message) {
-  return ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
-}
-
 /* ---- a folder of files, no deeper ---- */
 
 /* Calls `each` for every file; false when one failed, errno says why. */
@@ -72,14 +68,14 @@ static ethd_status write_fresh(const char *fresh, const ethd_config *config, con
 
 static ethd_status put_in_place(const char *folder, const char *fresh, const char *path, char *message) {
   bool done = every(fresh, sync_file) && sync_folder(fresh) && ethd__file_move(fresh, path) == 0 && sync_folder(folder);
-  return done ? ETHD_OK : refuse(path, message);
+  return done ? ETHD_OK : ethd__file_refuse(path, message);
 }
 
 ethd_status ethd__tap_keep(const char *folder, const char *name, const ethd_config *config, const ethd__taken *taken,
                            const char *words, char message[ETHD_MESSAGE_MAX]) {
   char *fresh = ethd__folder_path(folder, FRESH), *path = ethd__folder_path(folder, name);
   discard(fresh);
-  ethd_status status = ethd__file_make_folder(folder) ? refuse(folder, message) : ETHD_OK;
+  ethd_status status = ethd__file_make_folder(folder) ? ethd__file_refuse(folder, message) : ETHD_OK;
   if (!status) status = write_fresh(fresh, config, taken, words, message);
   if (!status) status = put_in_place(folder, fresh, path, message);
   if (status) discard(fresh);

@@ -71,10 +71,7 @@ ETHD__FP_APART static ethd_status step(ethd_control *control, const ethd_sense *
 
 ETHD__FP_APART static ethd_status step_between_modes(ethd_control *control, const ethd_sense *sense,
                                                      ethd_command *command, ethd_trace *trace) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = step(control, sense, command, trace);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, step(control, sense, command, trace));
 }
 
 ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
@@ -98,10 +95,7 @@ ETHD__FP_APART static ethd_status rehearse(ethd_control *control, const ethd_sen
 }
 
 ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense, ethd_command *command) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = rehearse(control, sense, command);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, rehearse(control, sense, command));
 }
 
 double ethd_control_period(const ethd_control *control) { return control->period; }
@@ -114,11 +108,7 @@ ETHD__FP_APART static void reset(ethd_control *control) {
   ethd__resume(plan, &control->state);
 }
 
-void ethd_control_reset(ethd_control *control) {
-  const uint64_t callers = ethd__fp_take();
-  reset(control);
-  ethd__fp_give(callers);
-}
+void ethd_control_reset(ethd_control *control) { ETHD__FP_DO(reset(control)); }
 
 void ethd_control_restart(ethd_control *control) {
   double heat[2], memory[ETHD_MEMORY];

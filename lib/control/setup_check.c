@@ -173,10 +173,7 @@ ETHD__FP_APART static ethd_status prepare(const ethd_setup *s, ethd__plan *out, 
 }
 
 ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = prepare(s, out, error);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, prepare(s, out, error));
 }
 
 ethd_status ethd_setup_check(const ethd_setup *setup, ethd_error *error) {

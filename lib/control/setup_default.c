@@ -18,44 +18,30 @@ ETHD__FP_APART static double range_of(const ethd_setup *s) {
   return far > near ? far : near;
 }
 
-double ethd_setup_range(const ethd_setup *s) {
-  const uint64_t callers = ethd__fp_take();
-  const double range = range_of(s);
-  ethd__fp_give(callers);
-  return range;
-}
+double ethd_setup_range(const ethd_setup *s) { ETHD__FP_RETURN(double, range_of(s)); }
 
 /* Chooses nothing where there is nothing to choose: then ethd_setup_check refuses the setup. */
-static void defaults(const ethd_param *params, uint32_t count, double *p) {
-  memset(p, 0, ETHD_PARAMS_MAX * sizeof *p);
-  ethd_params_default(params, ethd__setup_room(params, count), p);
-}
-
-static void law_defaults(const ethd_law *law, double *p) {
-  defaults(law ? law->params : NULL, law ? law->param_count : 0, p);
-}
-
 static void method_defaults(const ethd_method *methods, uint32_t count, uint32_t method, double *p) {
   const ethd_method chosen = method < count ? methods[method] : (ethd_method){0};
-  defaults(chosen.params, chosen.param_count, p);
+  ethd__setup_values(chosen.params, chosen.param_count, p);
 }
 
 void ethd_setup_tracking(ethd_setup *setup, const ethd_tracking_law *law) {
   if (ethd__setup_made(setup, NULL) < 0) return;
   setup->tracking = law;
-  law_defaults(law ? &law->law : NULL, setup->tracking_p);
+  ethd__law_defaults(law ? &law->law : NULL, setup->tracking_p);
 }
 
 void ethd_setup_contact(ethd_setup *setup, const ethd_contact_law *law) {
   if (ethd__setup_made(setup, NULL) < 0) return;
   setup->contact = law;
-  law_defaults(law ? &law->law : NULL, setup->contact_p);
+  ethd__law_defaults(law ? &law->law : NULL, setup->contact_p);
 }
 
 void ethd_setup_transition(ethd_setup *setup, const ethd_transition_law *law) {
   if (ethd__setup_made(setup, NULL) < 0) return;
   setup->transition = law;
-  law_defaults(law ? &law->law : NULL, setup->transition_p);
+  ethd__law_defaults(law ? &law->law : NULL, setup->transition_p);
 }
 
 void ethd_setup_velocity(ethd_setup *setup, ethd_velocity_method method) {

@@ -12,6 +12,11 @@ _Static_assert(sizeof(ethd_filter_method) == sizeof(unsigned), "a method is copi
 
 /* ---- what is chosen ---- */
 
+void ethd__setup_values(const ethd_param *params, uint32_t count, double p[ETHD_PARAMS_MAX]) {
+  memset(p, 0, ETHD_PARAMS_MAX * sizeof *p);
+  ethd_params_default(params, ethd__setup_room(params, count), p);
+}
+
 const ethd_setup_part *ethd__named_part_of(const ethd__named *named, const char *section) {
   for (uint32_t i = 0; i < named->part_count; i++)
     if (strcmp(named->parts[i].section, section) == 0) return &named->parts[i];
@@ -42,8 +47,7 @@ static void choose(const ethd__named *named, void *setup, const ethd_setup_part 
   double *values = (double *)(void *)((char *)setup + part->values);
   memcpy((char *)setup + part->chosen, chosen, size);
   ethd_method method = ethd__named_chosen(named, setup, part);
-  memset(values, 0, ETHD_PARAMS_MAX * sizeof *values);
-  ethd_params_default(method.params, method.param_count, values);
+  ethd__setup_values(method.params, method.param_count, values);
 }
 
 ethd_status ethd__named_choose(const ethd__named *named, void *setup, const char *section, const char *id,
@@ -130,10 +134,7 @@ ETHD__FP_APART static ethd_status set(const ethd__named *named, void *setup, con
 }
 
 ethd_status ethd__named_set(const ethd__named *named, void *setup, const char *name, double value, ethd_error *error) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = set(named, setup, name, value, error);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, set(named, setup, name, value, error));
 }
 
 double ethd__named_get(const ethd__named *named, const void *setup, const char *name) {

@@ -29,6 +29,12 @@ static inline uint32_t ethd__setup_room(const ethd_param *params, uint32_t count
   return count < ETHD_PARAMS_MAX ? count : ETHD_PARAMS_MAX;
 }
 
+/* Gives a table's parameters their defaults; those beyond, and all without a table, are 0. */
+void ethd__setup_values(const ethd_param *params, uint32_t count, double p[ETHD_PARAMS_MAX]);
+static inline void ethd__law_defaults(const ethd_law *law, double p[ETHD_PARAMS_MAX]) {
+  ethd__setup_values(law ? law->params : NULL, law ? law->param_count : 0, p);
+}
+
 /* As the functions of control.h of the same names. */
 const ethd_setup_part *ethd__named_part_of(const ethd__named *named, const char *section);
 ethd_method ethd__named_chosen(const ethd__named *named, const void *setup, const ethd_setup_part *part);

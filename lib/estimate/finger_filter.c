@@ -65,9 +65,7 @@ ETHD__FP_APART void ethd__filter_predict(const ethd_filter *f, ethd_filter_state
 }
 
 void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) {
-  const uint64_t callers = ethd__fp_take();
-  ethd__filter_predict(filter, state, dt);
-  ethd__fp_give(callers);
+  ETHD__FP_DO(ethd__filter_predict(filter, state, dt));
 }
 
 /* ---- readings ---- */
@@ -166,10 +164,7 @@ ETHD__FP_APART ethd_status ethd__filter_update(const ethd_filter *filter, ethd_f
 }
 
 ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, double age) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = ethd__filter_update(filter, state, x, age, 0);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, ethd__filter_update(filter, state, x, age, 0));
 }
 
 /* Returns whether x, v, age and noises are possible numbers; what isn't measured isn't asked. */
@@ -195,10 +190,7 @@ ETHD__FP_APART static ethd_status update3(const ethd_filter *f, ethd_filter_stat
 
 ethd_status ethd_filter_update3(const ethd_filter *filter, ethd_filter_state *state,
                                 const ethd_filter_reading *reading) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = update3(filter, state, reading);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, update3(filter, state, reading));
 }
 
 /* ---- output ---- */
@@ -221,9 +213,7 @@ ETHD__FP_APART void ethd__filter_output(const ethd_filter *filter, const ethd_fi
 }
 
 void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x, ethd_vec *v) {
-  const uint64_t callers = ethd__fp_take();
-  ethd__filter_output(filter, state, x, v);
-  ethd__fp_give(callers);
+  ETHD__FP_DO(ethd__filter_output(filter, state, x, v));
 }
 
 ETHD__FP_APART static void output3(const ethd_filter *f, const ethd_filter_state *s, ethd_vec3 *x, ethd_vec3 *v) {
@@ -234,7 +224,5 @@ ETHD__FP_APART static void output3(const ethd_filter *f, const ethd_filter_state
 }
 
 void ethd_filter_output3(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec3 *x, ethd_vec3 *v) {
-  const uint64_t callers = ethd__fp_take();
-  output3(filter, state, x, v);
-  ethd__fp_give(callers);
+  ETHD__FP_DO(output3(filter, state, x, v));
 }

@@ -70,10 +70,7 @@ ETHD__FP_APART static ethd_status fit_step(const ethd_fit *fit, const double r[E
 }
 
 ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS], ethd_finger *out) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = fit_step(fit, r, out);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, fit_step(fit, r, out));
 }
 
 ethd_status ethd__fit_moving(const ethd_fit *fit, const double r[ETHD_RAYS], const double lag[ETHD_RAYS], ethd_vec v,
@@ -98,7 +95,5 @@ ETHD__FP_APART static void fit_rays(double ring_radius, double finger_radius, et
 }
 
 void ethd_fit_rays(double ring_radius, double finger_radius, ethd_vec centre, double r[ETHD_RAYS]) {
-  const uint64_t callers = ethd__fp_take();
-  fit_rays(ring_radius, finger_radius, centre, r);
-  ethd__fp_give(callers);
+  ETHD__FP_DO(fit_rays(ring_radius, finger_radius, centre, r));
 }

@@ -208,10 +208,7 @@ ETHD__FP_APART static ethd_status cap_step(const ethd_cap *cap, const double *r,
 }
 
 ethd_status ethd_cap_step(const ethd_cap *cap, const double *r, ethd_cap_finger *out) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = cap_step(cap, r, out);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, cap_step(cap, r, out));
 }
 
 /* ---- the inverse, and what it can know ---- */
@@ -247,8 +244,5 @@ ETHD__FP_APART static ethd_status cap_bound(const ethd_cap *cap, ethd_vec3 centr
 }
 
 ethd_status ethd_cap_bound(const ethd_cap *cap, ethd_vec3 centre, double noise, ethd_vec3 *sd) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = cap_bound(cap, centre, noise, sd);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, cap_bound(cap, centre, noise, sd));
 }

@@ -50,8 +50,5 @@ ETHD__FP_APART double ethd__velocity_step(const ethd_velocity *v, ethd_velocity_
 
 double ethd_velocity_step(const ethd_velocity *velocity, ethd_velocity_state *state, double q, double torque,
                           double dt) {
-  const uint64_t callers = ethd__fp_take();
-  const double speed = ethd__velocity_step(velocity, state, q, torque, dt);
-  ethd__fp_give(callers);
-  return speed;
+  ETHD__FP_RETURN(double, ethd__velocity_step(velocity, state, q, torque, dt));
 }

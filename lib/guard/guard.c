@@ -102,8 +102,5 @@ ETHD__FP_APART static int32_t both_halves(const ethd_limits *limits, const ethd_
 
 int32_t ethd_guard_step(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *s,
                         const ethd_guard_motion *m, double torque[2]) {
-  const uint64_t callers = ethd__fp_take();
-  const int32_t bits = both_halves(limits, device, s, m, torque);
-  ethd__fp_give(callers);
-  return bits;
+  ETHD__FP_RETURN(int32_t, both_halves(limits, device, s, m, torque));
 }

@@ -21,10 +21,7 @@ ETHD__FP_APART static double heat(const ethd_limits *limits, ethd_guard_state *s
 }
 
 double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *s, double dt) {
-  const uint64_t callers = ethd__fp_take();
-  const double most = heat(limits, s, dt);
-  ethd__fp_give(callers);
-  return most;
+  ETHD__FP_RETURN(double, heat(limits, s, dt));
 }
 
 double ethd__guard_cool(const ethd_limits *limits, double heat) {

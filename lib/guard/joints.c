@@ -127,10 +127,7 @@ ETHD__FP_APART static ethd_joints_ruling bound_all(const ethd_joint_limits *limi
 
 ethd_joints_ruling ethd_guard_joints(const ethd_joint_limits *limits, const double *q, const double *v,
                                      double *command) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_joints_ruling ruling = bound_all(limits, q, v, command);
-  ethd__fp_give(callers);
-  return ruling;
+  ETHD__FP_RETURN(ethd_joints_ruling, bound_all(limits, q, v, command));
 }
 
 ETHD__FP_APART static ethd_status check_all(const ethd_joint_limits *limits, ethd_error *error) {
@@ -153,8 +150,5 @@ ETHD__FP_APART static ethd_status check_all(const ethd_joint_limits *limits, eth
 }
 
 ethd_status ethd_joint_limits_check(const ethd_joint_limits *limits, ethd_error *error) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = check_all(limits, error);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, check_all(limits, error));
 }

@@ -86,8 +86,5 @@ ETHD__FP_APART static ethd_status check_all(const ethd_limits *limits, ethd_erro
 }
 
 ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = check_all(limits, error);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, check_all(limits, error));
 }

@@ -39,10 +39,7 @@ ETHD__FP_APART static ethd_guard_device device_of(const ethd_arm *arm, const eth
 
 ethd_guard_device ethd_guard_device_of(const ethd_arm *arm, const ethd_dynamics *dynamics, double gap, double period,
                                        double lag) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_guard_device device = device_of(arm, dynamics, gap, period, lag);
-  ethd__fp_give(callers);
-  return device;
+  ETHD__FP_RETURN(ethd_guard_device, device_of(arm, dynamics, gap, period, lag));
 }
 
 static double reaction(const ethd_guard_device *d, bool estimated) {
@@ -54,10 +51,7 @@ ETHD__FP_APART static double damping(const ethd_guard_device *d, double mass, bo
 }
 
 double ethd_guard_damping(const ethd_guard_device *d, double mass, bool estimated) {
-  const uint64_t callers = ethd__fp_take();
-  const double b = damping(d, mass, estimated);
-  ethd__fp_give(callers);
-  return b;
+  ETHD__FP_RETURN(double, damping(d, mass, estimated));
 }
 
 /* Returns a link's deceleration under full torque, m/s^2 at the ring. */
@@ -75,10 +69,7 @@ ETHD__FP_APART static double brake_time(const ethd_guard_device *d, const ethd_l
 }
 
 double ethd_guard_brake_time(const ethd_guard_device *d, const ethd_limits *limits) {
-  const uint64_t callers = ethd__fp_take();
-  const double t = brake_time(d, limits);
-  ethd__fp_give(callers);
-  return t;
+  ETHD__FP_RETURN(double, brake_time(d, limits));
 }
 
 /* Full torque brakes a link down to the speed at which the damping asks for less; from there on the speed decays. */
@@ -95,10 +86,7 @@ ETHD__FP_APART static double stop_time(const ethd_guard_device *d, const ethd_li
 }
 
 double ethd_guard_stop_time(const ethd_guard_device *d, const ethd_limits *limits) {
-  const uint64_t callers = ethd__fp_take();
-  const double t = stop_time(d, limits);
-  ethd__fp_give(callers);
-  return t;
+  ETHD__FP_RETURN(double, stop_time(d, limits));
 }
 
 /* ---- a tick of a stop ---- */

@@ -240,10 +240,7 @@ ETHD__FP_APART static ethd_status create(const ethd_scene_def *def, ethd_scene *
 }
 
 ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out, ethd_error *error) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = create(def, out, error);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, create(def, out, error));
 }
 
 void ethd_scene_destroy(ethd_scene *scene) { free(scene); }

@@ -56,10 +56,7 @@ ETHD__FP_APART static size_t out_of_reach(const ethd_scene *scene, const ethd_ar
 }
 
 size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius) {
-  const uint64_t callers = ethd__fp_take();
-  const size_t count = out_of_reach(scene, arm, radius);
-  ethd__fp_give(callers);
-  return count;
+  ETHD__FP_RETURN(size_t, out_of_reach(scene, arm, radius));
 }
 
 /* ---- its contents ---- */

@@ -33,8 +33,5 @@ ETHD__FP_APART static ethd_status parse(const char *text, size_t length, ethd_sc
 }
 
 ethd_status ethd_scene_parse(const char *text, size_t length, ethd_scene **out, ethd_error *error) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = parse(text, length, out, error);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, parse(text, length, out, error));
 }

@@ -48,8 +48,5 @@ ETHD__FP_APART static ethd_status prune(const ethd_scene *scene, const ethd_arm 
 
 ethd_status ethd_scene_prune(const ethd_scene *scene, const ethd_arm *arm, double radius, ethd_scene **out,
                              ethd_error *error) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = prune(scene, arm, radius, out, error);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, prune(scene, arm, radius, out, error));
 }

@@ -163,7 +163,5 @@ ETHD__FP_APART static void follow(const ethd_scene *scene, int32_t object, ethd_
 }
 
 void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from, ethd_touch *out) {
-  const uint64_t callers = ethd__fp_take();
-  follow(scene, object, x, from, out);
-  ethd__fp_give(callers);
+  ETHD__FP_DO(follow(scene, object, x, from, out));
 }

@@ -129,10 +129,7 @@ ETHD__FP_APART static ethd_status parse(const char *text, size_t length, ethd_so
 }
 
 ethd_status ethd_solids_parse(const char *text, size_t length, ethd_solids **out, ethd_error *error) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = parse(text, length, out, error);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, parse(text, length, out, error));
 }
 
 void ethd_solids_destroy(ethd_solids *solids) { free(solids); }

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/laws_check.h"
+#include "core/named.h"
 #include "error.h"
 #include "fp_mode.h"
 #include "space/plan.h"
@@ -28,25 +29,19 @@ ethd_ability ethd_ability_unknown(void) {
   return (ethd_ability){nan, nan, nan, nan, nan, nan};
 }
 
-static void law_defaults(const ethd_law *law, double *p) {
-  memset(p, 0, ETHD_PARAMS_MAX * sizeof *p);
-  if (law && law->params)
-    ethd_params_default(law->params, law->param_count < ETHD_PARAMS_MAX ? law->param_count : ETHD_PARAMS_MAX, p);
-}
-
 void ethd_space_tracking(ethd_space_setup *setup, const ethd_tracking_law *law) {
   setup->tracking = law;
-  law_defaults(law ? &law->law : NULL, setup->tracking_p);
+  ethd__law_defaults(law ? &law->law : NULL, setup->tracking_p);
 }
 
 void ethd_space_contact(ethd_space_setup *setup, const ethd_contact_law *law) {
   setup->contact = law;
-  law_defaults(law ? &law->law : NULL, setup->contact_p);
+  ethd__law_defaults(law ? &law->law : NULL, setup->contact_p);
 }
 
 void ethd_space_transition(ethd_space_setup *setup, const ethd_transition_law *law) {
   setup->transition = law;
-  law_defaults(law ? &law->law : NULL, setup->transition_p);
+  ethd__law_defaults(law ? &law->law : NULL, setup->transition_p);
 }
 
 void ethd_space_setup_fill(ethd_space_setup *setup, uint32_t bytes) {
@@ -148,10 +143,7 @@ ETHD__FP_APART static ethd_status prepare(const ethd_space_setup *s, ethd__space
 }
 
 ethd_status ethd__space_prepare(const ethd_space_setup *s, ethd__space_plan *out, ethd_error *error) {
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = prepare(s, out, error);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, prepare(s, out, error));
 }
 
 ethd_status ethd_space_check(const ethd_space_setup *setup, ethd_error *error) {

@@ -56,10 +56,7 @@ ethd_status ethd_space_step(ethd_space *space, const ethd_space_sense *sense, co
   t.count = count;
   t.trace = trace ? trace : &own;
   if (ethd__fp_is_own()) return step(space, &t, command);
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = step(space, &t, command);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, step(space, &t, command));
 }
 
 ETHD__FP_APART static ethd_status rehearse(ethd_space *space, ethd__space_tick *t, ethd_space_command *command) {
@@ -81,10 +78,7 @@ ethd_status ethd_space_rehearse(ethd_space *space, const ethd_space_sense *sense
   t.surfaces = surfaces;
   t.count = count;
   t.trace = &own;
-  const uint64_t callers = ethd__fp_take();
-  const ethd_status status = rehearse(space, &t, command);
-  ethd__fp_give(callers);
-  return status;
+  ETHD__FP_RETURN(ethd_status, rehearse(space, &t, command));
 }
 
 double ethd_space_period(const ethd_space *space) { return space->period; }
@@ -96,11 +90,7 @@ ETHD__FP_APART static void reset(ethd_space *space) {
   resume(&space->plans[space->mail.ruling], &space->state);
 }
 
-void ethd_space_reset(ethd_space *space) {
-  const uint64_t callers = ethd__fp_take();
-  reset(space);
-  ethd__fp_give(callers);
-}
+void ethd_space_reset(ethd_space *space) { ETHD__FP_DO(reset(space)); }
 
 void ethd_space_restart(ethd_space *space) {
   double memory[ETHD_MEMORY];

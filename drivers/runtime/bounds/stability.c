@@ -168,18 +168,6 @@ double ethd__sampled_kick(const ethd__sampled_loop *loop, double count) {
 /* A free ring's position is neither stable nor unstable, so its radius is 1, which counts as stable. */
 bool ethd__sampled_stable(const ethd__sampled_loop *loop) { return ethd__sampled_radius(loop) <= 1 + 1e-7; }
 
-/* ---- closed forms ---- */
-
-void ethd__sampled_boundary(double mass, double period, int delay, double th, double *stiffness, double *damping) {
-  double t = tan(th / 2), k = 4 * t * t * cos((delay + 1) * th);
-  *stiffness = k * mass / (period * period);
-  *damping = (2 * t * sin((delay + 1) * th) - k / 2) * mass / period;
-}
-
-double ethd__sampled_damping_free(double mass, double period, int delay) {
-  return 2 * mass / period * tan(M_PI / (4 * (delay + 1)));
-}
-
 double ethd__sampled_passive_friction(const ethd__sampled_loop *loop) {
   return loop->stiffness * loop->period / 2 + loop->damping;
 }

@@ -85,13 +85,6 @@ double ethd__sampled_held(double needed, double coulomb, double viscous);
 /* Returns the speed, m/s, that one step of the encoder, m at the ring, gives the motor's side within a tick. */
 double ethd__sampled_kick(const ethd__sampled_loop *loop, double count);
 
-/* Gives the boundary for the backward difference and whole ticks, in closed form, 0 < th <= pi / (2 (n + 1)):
-     K T^2/m = 4 tan^2(th/2) cos((n+1) th),  B T/m = 2 tan(th/2) sin((n+1) th) - K T^2/(2m) */
-void ethd__sampled_boundary(double mass, double period, int delay, double th, double *stiffness, double *damping);
-
-/* Returns the boundary's end at K = 0: (2m/T) tan(pi / (4 (n+1))). */
-double ethd__sampled_damping_free(double mass, double period, int delay);
-
 /* Returns the friction from which on a wall is passive, K T/2 + B (Colgate and Schenkel 1997), Ns/m. */
 double ethd__sampled_passive_friction(const ethd__sampled_loop *loop);
 

@@ -17,10 +17,6 @@
 #define LOCK ".lock"
 #define TRIES 100 /* how often to try again when a lock's owner removes it at the same time */
 
-static ethd_status refuse(const char *path, char *message) {
-  return ethd__say(message, ETHD_E_FILE, "%s: %s", path, ethd__file_why());
-}
-
 static bool matches(const char *const *own, const char *name) {
   for (; own && *own; own++)
     if (!fnmatch(*own, name, FNM_PERIOD)) return true;
@@ -60,11 +56,11 @@ static ethd_status lock(const char *folder, int how, ethd__claim *out, char *mes
   if (!out->path) return ethd__no_memory(message, folder);
   for (int i = 0; i < TRIES; i++) {
     out->fd = ethd__file_open(out->path, O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK, 0666);
-    if (out->fd < 0) return refuse(out->path, message);
+    if (out->fd < 0) return ethd__file_refuse(out->path, message);
     if (!is_regular(out->fd)) return ethd__say(message, ETHD_E_FILE, "%s: isn't a file; remove it", out->path);
     if (flock(out->fd, how) != 0)
       return errno == EWOULDBLOCK ? ethd__say(message, ETHD_E_ARGUMENT, "%s: another program is writing there", folder)
-                                  : refuse(out->path, message);
+                                  : ethd__file_refuse(out->path, message);
     if (is_at(out->fd, out->path)) return ETHD_OK;
     close(out->fd);
     out->fd = -1;
@@ -101,7 +97,7 @@ static bool keep_odd(int folder, const char *name, void *user) {
 
 static ethd_status claim(const char *folder, int how, ethd__claim *out, char *message) {
   *out = ETHD_CLAIM_NONE;
-  ethd_status status = ethd__file_make_folder(folder) ? refuse(folder, message) : ETHD_OK;
+  ethd_status status = ethd__file_make_folder(folder) ? ethd__file_refuse(folder, message) : ETHD_OK;
   if (!status) status = lock(folder, how, out, message);
   if (status) let_go(out);
   return status;
@@ -139,5 +135,5 @@ static bool cannot_remove(int folder, const char *name, void *user) {
 }
 
 ethd_status ethd__claim_empty(const char *folder, const char *const *own, char message[ETHD_MESSAGE_MAX]) {
-  return any(folder, own, cannot_remove, NULL) ? refuse(folder, message) : ETHD_OK;
+  return any(folder, own, cannot_remove, NULL) ? ethd__file_refuse(folder, message) : ETHD_OK;
 }

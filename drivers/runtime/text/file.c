@@ -173,6 +173,10 @@ const char *ethd__file_why(void) {
   return strerror(errno);
 }
 
+ethd_status ethd__file_refuse(const char *path, char message[ETHD_MESSAGE_MAX]) {
+  return ethd__say(message, ETHD_E_FILE, "%s: %s", path, ethd__file_why());
+}
+
 /* ---- files ---- */
 
 static int refuse(int fd, const char *path, const char *why, char *message) {

@@ -45,8 +45,9 @@ int ethd__file_remove(const char *path);
 int ethd__file_remove_folder(const char *path);
 int ethd__file_move(const char *from, const char *to);
 
-/* Returns what errno says about a place. */
+/* Returns what errno says about a place; with it a message, and ETHD_E_FILE. */
 const char *ethd__file_why(void);
+ethd_status ethd__file_refuse(const char *path, char message[ETHD_MESSAGE_MAX]);
 
 /* Opens a file to read it: a regular one; or, where the path isn't below a received folder, also a pipe, a terminal or
    /dev/null. Doesn't wait for a pipe's other end. */

@@ -12,15 +12,11 @@
 #include "text/file.h"
 #include "text/text.h"
 
-static ethd_status refuse(const char *path, char *message) {
-  return ethd__say(message, ETHD_E_FILE, "%s: %s", path, ethd__file_why());
-}
-
 /* ---- what is written directly ---- */
 
 static ethd_status take(int fd, const char *path, ethd_replace *out, char *message) {
   out->file = fd >= 0 ? fdopen(fd, "wb") : NULL;
-  if (!out->file) return refuse(path, message);
+  if (!out->file) return ethd__file_refuse(path, message);
   out->path = strdup(path);
   return ETHD_OK;
 }
@@ -120,7 +116,7 @@ static ethd_status replace(const char *path, mode_t mode, ethd_replace *out, cha
   out->path = strdup(path);
   out->file = out->path ? beside(path, mode, &out->temporary) : NULL;
   if (out->file) return ETHD_OK;
-  ethd_status status = out->path ? refuse(path, message) : ethd__no_memory(message, path);
+  ethd_status status = out->path ? ethd__file_refuse(path, message) : ethd__no_memory(message, path);
   free(out->path);
   *out = (ethd_replace){0};
   return status;
@@ -130,14 +126,14 @@ static ethd_status replace(const char *path, mode_t mode, ethd_replace *out, cha
 static ethd_status follow(const char *path, struct stat *info, char **target, char *message) {
   if (!S_ISLNK(info->st_mode)) return ETHD_OK;
   errno = ELOOP;
-  if (ethd__file_is_received(path)) return refuse(path, message);
+  if (ethd__file_is_received(path)) return ethd__file_refuse(path, message);
   if (stat(path, info) != 0)
-    return errno != ENOENT ? refuse(path, message)
+    return errno != ENOENT ? ethd__file_refuse(path, message)
                            : ethd__say(message, ETHD_E_FILE, "%s: is a link that leads nowhere; remove it first", path);
   if (!S_ISREG(info->st_mode))
     return ethd__say(message, ETHD_E_FILE, "%s: is a link to something that isn't a file; name that itself", path);
   *target = realpath(path, NULL);
-  return *target ? ETHD_OK : refuse(path, message);
+  return *target ? ETHD_OK : ethd__file_refuse(path, message);
 }
 
 /* A pipe waits for its reader, until a signal comes. */
@@ -158,7 +154,7 @@ static ethd_status begin_at(const char *path, const struct stat *info, ethd_repl
   if (stream >= 0) return through(stream, path, out, message);
   if ((S_ISFIFO(info->st_mode) || S_ISCHR(info->st_mode)) && !received) return directly(path, out, message);
   if (!S_ISREG(info->st_mode)) return ethd__say(message, ETHD_E_FILE, "%s: isn't a file; nothing is replaced", path);
-  return access(path, W_OK) ? refuse(path, message) : replace(path, info->st_mode & 0777, out, message);
+  return access(path, W_OK) ? ethd__file_refuse(path, message) : replace(path, info->st_mode & 0777, out, message);
 }
 
 ethd_status ethd_replace_begin(const char *path, ethd_replace *out, char message[ETHD_MESSAGE_MAX]) {
@@ -168,7 +164,7 @@ ethd_status ethd_replace_begin(const char *path, ethd_replace *out, char message
   *out = (ethd_replace){0};
   if (given >= 0) return through(given, path, out, message);
   bool exists = ethd__file_look_at(path, &info) == 0;
-  if (!exists) return errno == ENOENT ? replace(path, 0666, out, message) : refuse(path, message);
+  if (!exists) return errno == ENOENT ? replace(path, 0666, out, message) : ethd__file_refuse(path, message);
   ethd_status status = follow(path, &info, &target, message);
   if (!status) status = begin_at(target ? target : path, &info, out, message);
   free(target);
@@ -191,8 +187,8 @@ ethd_status ethd_replace_commit(ethd_replace *replace, char message[ETHD_MESSAGE
   failed |= fclose(replace->file) != 0;
   if (!failed && replace->temporary) failed = ethd__file_move(replace->temporary, replace->path) != 0;
   if (failed) {
-    status =
-        errno ? refuse(path, message) : ethd__say(message, ETHD_E_FILE, "%s: a write failed; is the disk full?", path);
+    status = errno ? ethd__file_refuse(path, message)
+                   : ethd__say(message, ETHD_E_FILE, "%s: a write failed; is the disk full?", path);
     if (replace->temporary) ethd__file_remove(replace->temporary);
   }
   if (lock >= 0) close(lock);

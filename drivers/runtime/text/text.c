@@ -12,10 +12,6 @@
 #include "text/error_text.h"
 #include "text/file.h"
 
-static ethd_status refuse(const char *path, char *message) {
-  return ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
-}
-
 /* ---- reading ---- */
 
 #define PIPE_MAX ((size_t)1 << 30) /* bytes of what isn't a regular file */
@@ -76,7 +72,7 @@ static ethd_status read_stream(int fd, const char *path, size_t most, char **tex
   if (!buffer) return ethd__no_memory(message, path);
   if (got < 0 || n > most) {
     free(buffer);
-    return got < 0 ? refuse(path, message) : too_long(path, most, message);
+    return got < 0 ? ethd__file_refuse(path, message) : too_long(path, most, message);
   }
   buffer[n] = 0;
   *text = buffer;
@@ -88,7 +84,7 @@ static ethd_status read_file(int fd, const char *path, size_t size, char **text,
   errno = 0;
   *text = read_regular(fd, size);
   if (*text) *length = size;
-  return *text ? ETHD_OK : errno && errno != ENOMEM ? refuse(path, message) : ethd__no_memory(message, path);
+  return *text ? ETHD_OK : errno && errno != ENOMEM ? ethd__file_refuse(path, message) : ethd__no_memory(message, path);
 }
 
 /* Editors on Windows put a mark before UTF-8, and may write UTF-16. */
