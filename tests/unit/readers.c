@@ -104,7 +104,8 @@ static int read_config(const char *text, size_t length) {
   ethd_config *config;
   ethd_status status = ethd_config_parse(text, length, "x", "/nowhere", &config, message);
   if (status != ETHD_OK) return config ? -1 : judged(status, message);
-  bool is_good = ethd_setup_check(&config->setup, NULL) == ETHD_OK;
+  bool is_good = config->is_space ? ethd_space_check(&config->space, NULL) == ETHD_OK
+                                  : ethd_setup_check(&config->setup, NULL) == ETHD_OK;
   ethd_config_free(config);
   return is_good ? 1 : -1;
 }
@@ -256,6 +257,7 @@ const text_reader text_readers[] = {
      ini_words, read_ini, grow_ini, 2000},
     {"csv", TEXT("t_s,x_m,y_m\n0,1.5,-2e-3\n0.001,,nan\n0.002,7,8\n"), table_words, read_csv, grow_csv, 20000},
     {"config", TEXT(everything), config_words, read_config, NULL, 0},
+    {"config_space", TEXT(everything_in_space), config_words, read_config, NULL, 0},
     {"calibration",
      TEXT("[calibration]\nlevel = table\ndate = x\nresidual = 1e-4\n" SENSOR(0) SENSOR(1) SENSOR(2) SENSOR(3) SENSOR(4)
               SENSOR(5) SENSOR(6) SENSOR(7) SENSOR(8) SENSOR(9) SENSOR(10) SENSOR(11) SENSOR(12) SENSOR(13) SENSOR(14)

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "ethd/config.h"
+#include "unit/config_text.h"
 #include "unit/suite.h"
 
 static char message[ETHD_MESSAGE_MAX];
@@ -32,18 +33,8 @@ TEST(test_defaults) {
   ethd_config_free(c);
 }
 
-static const char everything[] =
-    "[space]\ncommand = force\neffector = cap\nperiod = 0.002\nradius = 0.03\nfinger_radius = 0.007\n"
-    "finger_radius_max = 0.011\nswap_time = 0.04\nv_hysteresis = 0.002\nspeed = inf\nforce = 12\nforce_rate = 900\n"
-    "x_min = -0.5\nx_max = 0.6\nreach = 0.8\nreach_z = 0.33\nfinger_age = 0.06\nstop_time = 0.25\n"
-    "[ability]\nspeed = 2\nacceleration = 20\ndelay = 0.008\nmass = 4\nforce = 100\nfriction = 1.5\n"
-    "[finger_filter]\nmethod = cv\nreference = tick\n"
-    "[tracking]\nlaw = follow\n[contact]\nlaw = spring\nk_e = 2600\n"
-    "[transition]\nlaw = smooth\nbeta_min = 0.2\n"
-    "[device]\ndriver = other\nwire = 3 x\n";
-
 TEST(test_every_part) {
-  ethd_config *c = parse(everything);
+  ethd_config *c = parse(everything_in_space);
   const ethd_space_setup *s = &c->space;
   ck_assert(s->kind == ETHD_SPACE_FORCE && s->effector == ETHD_EFFECTOR_CAP && s->period == 0.002 && s->radius == 0.03);
   ck_assert(s->finger_radius == 0.007 && s->finger_radius_max == 0.011 && s->swap_time == 0.04);
