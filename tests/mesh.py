@@ -60,3 +60,16 @@ for level in (2, 4, 6):
     print(f"{len(t):6d} triangles: {1e6 * off:7.3f} um off the mesh, {1e6 * round_ball:8.3f} um off the ball")
     assert len(said) == 60 and abs(off) < 2e-6, off
     assert -sagitta < round_ball < 2e-6, (round_ball, sagitta)
+
+# A plate of 5 mm, of faces with four corners: its back is nearer than the stand-off, and isn't met from the front.
+with open(f"{folder}/plate.obj", "w") as out:
+    out.writelines(f"v {x} {y} {z}\n" for x in (0, 0.005) for y in (-0.4, 0.6) for z in (-0.3, 0.5))
+    out.writelines(f"f {face}\n" for face in ("1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"))
+said = subprocess.run([mesh, f"{folder}/plate.obj"], capture_output=True, text=True, check=True).stdout.splitlines()
+x, left = float(said[-1].split()[0]), float(said[-1].split()[4])
+print(f"{1e6 * (x + STAND_OFF):7.3f} um off a plate")
+assert abs(x + STAND_OFF) < 2e-6 and abs(left) < 2e-6, (x, left)
+with open(f"{folder}/line.obj", "w") as out:
+    out.write("v 0 0 0\nv 1 0 0\nl 1 2\n")
+refused = subprocess.run([mesh, f"{folder}/line.obj"], capture_output=True, text=True, check=False)
+assert refused.returncode == 1 and refused.stderr == f"{folder}/line.obj: has no triangle\n", refused
