@@ -1,5 +1,6 @@
 /* An arm in space, as its configuration says, in a loop of its own thread for some seconds:
-     cc arm.c -o arm $(pkg-config --cflags --libs ethd-drivers) -lm && ./arm arm.ini 5 */
+     cc arm.c -o arm $(pkg-config --cflags --libs ethd-drivers) -lm && ./arm arm.ini 5
+   With -DMESH it also meets a mesh (mesh.h): cc -DMESH arm.c ... $(pkg-config --libs assimp) -lembree4; ./arm arm.ini 5 FILE */
 #include <ethd/config.h>
 #include <ethd/loop.h>
 #include <math.h>
@@ -7,10 +8,18 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-static uint32_t near_solids(void *solids, const ethd_space_sense *sense, ethd_surface *out) ETHD_RT {
-  const size_t count = ethd_solids_surfaces(solids, NULL, ethd_vec3_of(sense->x), 0.5, out, ETHD_SURFACES_MAX);
+#define RANGE 0.5 /* m: no surface that is farther matters to this arm */
+#ifdef MESH
+#include "mesh.h"
+static uint32_t near_world(void *world, const ethd_space_sense *sense, ethd_surface *out) ETHD_RT {
+  return surfaces_near(world, ethd_vec3_of(sense->x), RANGE, out, ETHD_SURFACES_MAX);
+}
+#else
+static uint32_t near_world(void *solids, const ethd_space_sense *sense, ethd_surface *out) ETHD_RT {
+  const size_t count = ethd_solids_surfaces(solids, NULL, ethd_vec3_of(sense->x), RANGE, out, ETHD_SURFACES_MAX);
   return (uint32_t)(count < ETHD_SURFACES_MAX ? count : ETHD_SURFACES_MAX);
 }
+#endif
 
 static int fail(const char *message) { return fprintf(stderr, "arm: %s\n", message), 1; }
 
@@ -29,7 +38,12 @@ int main(int argc, char **argv) {
   ethd_space *space;
   ethd_loop *loop;
   ethd_space_row row;
+#ifdef MESH
+  mesh world;
+  if (argc != 4 || !load(argv[3], &world)) return fail("CONFIG SECONDS MESH"), 2;
+#else
   if (argc != 3) return fail("CONFIG SECONDS"), 2;
+#endif
   if (ethd_config_load(argv[1], &config, message)) return fail(message);
   if (!config->is_space) return fail("the configuration has no section [space]");
   ethd_space_setup *setup = &config->space;
@@ -46,7 +60,11 @@ int main(int argc, char **argv) {
   if (ethd_space_create(setup, &space, &error)) return ethd_error_text(argv[1], &error, message), fail(message);
   ethd_loop_def with = ethd_loop_default();
   with.device = device, with.space = space, with.period = setup->period, with.gap = setup->gap;
-  if (config->solids) with.surfaces = near_solids, with.surfaces_of = config->solids;
+#ifdef MESH
+  with.surfaces = near_world, with.surfaces_of = &world;
+#else
+  if (config->solids) with.surfaces = near_world, with.surfaces_of = config->solids;
+#endif
   if (ethd_loop_create(&with, &loop, &error)) return ethd_error_text("the loop", &error, message), fail(message);
   if (ethd_device_start(device)) return fail("the device doesn't start");
   if (ethd_loop_start(loop, &error)) return ethd_error_text("the loop", &error, message), fail(message);
