@@ -162,7 +162,7 @@ SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -ty
 ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a $(B)/libethd.a
 LIBRARIES := $(foreach l,ethd ethd-drivers,$(B)/lib$(l).a $(B)/lib$(l).so.0 $(B)/lib$(l).so)
 # What the drivers' library needs of others.
-DRIVERS_LIBS := -linih -ljansson
+DRIVERS_LIBS := -linih -ljansson -lmodbus
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
 # A script may run any program, and locale.sh runs unit tests.

@@ -36,7 +36,7 @@ hosted sh tests/golden.sh once
 for script in ${ETHD_WHOLE:+calibrate convert run study}; do hosted sh "tests/$script.sh"; done
 
 # The examples' own reader: 0.5 is a number, and only what comes after it, the plants, is missing.
-$CC -Iinclude apps/examples/teleop.c -o "$folder/test_teleop" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -ljansson \
+$CC -Iinclude apps/examples/teleop.c -o "$folder/test_teleop" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -ljansson -lmodbus \
   -lm -ldl -lpthread || fail "teleop: it isn't compiled"
 env -u ETHD_DATA_DIR LD_PRELOAD="$folder/host.so" "$folder/test_teleop" $((20000 + $$ % 12000)) 0.5 >"$folder/out" 2>&1 </dev/null
 [ $? = 1 ] && grep -q 'q.plant: No such file' "$folder/out" || fail "teleop: $(cat "$folder/out")"

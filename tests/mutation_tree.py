@@ -53,7 +53,7 @@ class Tree:
             archives = [str(self.build / f"libethd-{part}.a") for part in ("tests", "apps", "drivers")]
             subprocess.run([*self.link, "-rdynamic", "-o", str(program), str(self.build / "obj" / test.with_suffix(".o")),
                             "-L" + str(self.work), "-Wl,--no-as-needed", "-lmutant", *archives, "-lmutant", *libs,
-                            "-Wl,--as-needed", "-lSDL2_ttf", "-lSDL2", "-linih", "-lz", "-lexpat", "-lm", "-ldl",
+                            "-Wl,--as-needed", "-lSDL2_ttf", "-lSDL2", "-linih", "-lmodbus", "-lz", "-lexpat", "-lm", "-ldl",
                             "-lpthread"], env=self.env, check=True)
             tests[test.stem] = test
         return tests
@@ -68,7 +68,7 @@ class Tree:
             archives = [str(self.build / f"libethd-{part}.a") for part in ("apps", "drivers")]
             subprocess.run([*self.link, "-rdynamic", "-o", str(self.work / "bin" / name), str(self.build / f"obj/apps/{name}.o"),
                             "-L" + str(self.work), "-Wl,--no-as-needed", "-lmutant", *archives, "-lmutant", "-linih",
-                            "-lz", "-lexpat", "-lm", "-ldl", "-lpthread"], env=self.env, check=True)
+                            "-lmodbus", "-lz", "-lexpat", "-lm", "-ldl", "-lpthread"], env=self.env, check=True)
 
     def golden(self):
         env = dict(self.env, BUILD=str(self.work), TMPDIR=str(self.work / "tmp"))

@@ -96,7 +96,7 @@ says() { # INCLUDE -> sentence
   $CC -std=gnu11 -O0 -w -I"$1" "$work/app.c" "$BUILD/libethd.a" -ldl -lm -o "$work/app" && "$work/app"
 }
 device_says() { # INCLUDE -> two sentences
-  $CC -std=gnu11 -O0 -w -I"$1" "$work/device.c" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -ljansson \
+  $CC -std=gnu11 -O0 -w -I"$1" "$work/device.c" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -ljansson -lmodbus \
     -ldl -lm -lpthread -o "$work/device" && "$work/device"
 }
 cat >"$work/sizes.c" <<'EOF'
@@ -111,7 +111,7 @@ int main(void) {
 }
 EOF
 $CC -std=gnu11 -Iinclude -c "$work/sizes.c" -o "$work/sizes.o" &&
-  $CC "$work/sizes.o" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -ljansson -ldl -lm -lpthread -o "$work/sizes" || fail "no sizes"
+  $CC "$work/sizes.o" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -ljansson -lmodbus -ldl -lm -lpthread -o "$work/sizes" || fail "no sizes"
 eval "$("$work/sizes")"
 
 is() { # WHAT INCLUDE EXPECTED

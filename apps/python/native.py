@@ -12,7 +12,7 @@ from cffi import FFI
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TREE = os.path.dirname(os.path.dirname(HERE))
-NEEDED = ["-linih", "-ljansson", "-lm", "-ldl", "-lpthread"]
+NEEDED = ["-linih", "-ljansson", "-lmodbus", "-lm", "-ldl", "-lpthread"]
 
 
 def pkg_config(*arguments):

@@ -1,6 +1,7 @@
 #include "servo/bus.h"
 
 #include <errno.h>
+#include <modbus/modbus.h>
 #include <poll.h>
 #include <string.h>
 #include <time.h>
@@ -8,6 +9,7 @@
 
 #include "clock.h"
 #include "servo/bus_parts.h"
+#include "text/error_text.h"
 
 #define DRAINS 10 /* draining gives up after this multiple of the quiet time */
 
@@ -15,46 +17,60 @@ static int64_t nanoseconds(double seconds) { return (int64_t)(1e9 * seconds); }
 
 /* ---- opening ---- */
 
+/* True for what libmodbus can't frame, and for several units, because it doesn't look at an answer's unit over tcp. */
+static bool is_own(const ethd__servo_map *map) {
+  return map->crc == ETHD__SERVO_CRC_HIGH_FIRST || map->local_echo || ethd__servo_several(map);
+}
+
+/* libmodbus frames and checks. Lines and connections are ours, so its own recoveries are switched off. */
+static modbus_t *context(const ethd__servo_map *map, int fd) {
+  modbus_t *m =
+      map->transport == ETHD__SERVO_TCP ? modbus_new_tcp("127.0.0.1", 502) : modbus_new_rtu(map->port, 9600, 'N', 8, 1);
+  uint32_t response = (uint32_t)(1e6 * map->response);
+  if (!m) return NULL;
+  modbus_set_error_recovery(m, MODBUS_ERROR_RECOVERY_NONE);
+  modbus_set_response_timeout(m, response / 1000000, response % 1000000);
+  modbus_set_byte_timeout(m, 0, 0); /* otherwise it would replace the response time-out */
+  modbus_set_socket(m, fd);
+  if (modbus_set_slave(m, (int)map->unit) == 0) return m;
+  modbus_free(m);
+  return NULL;
+}
+
 ethd_status ethd__servo_bus_open(const ethd__servo_map *map, ethd__servo_bus *bus, char message[ETHD_MESSAGE_MAX]) {
   *bus = (ethd__servo_bus){.map = map, .fd = -1};
   ethd_status status = ethd__servo_port_open(map, &bus->fd, &bus->at_once, message);
+  if (status) return status;
   bus->quiet_ns = ethd__clock_now();
-  return status;
+  if (is_own(map)) return ETHD_OK;
+  bus->modbus = context(map, bus->fd);
+  if (bus->modbus) return ETHD_OK;
+  ethd__servo_bus_close(bus);
+  return ethd__say(message, ETHD_E_ARGUMENT, "%s: unit %u isn't allowed here", map->port, map->unit);
 }
 
 void ethd__servo_bus_close(ethd__servo_bus *bus) {
+  if (bus->modbus) modbus_free(bus->modbus);
+  bus->modbus = NULL;
   if (bus->fd >= 0) close(bus->fd);
   bus->fd = -1;
 }
 
 /* ---- one question ---- */
 
-/* The exceptions of the application protocol V1.1b3, section 7, by their codes. */
-static const struct {
-  ethd__servo_outcome outcome;
-  const char *what;
-} exceptions[] = {[1] = {ETHD__SERVO_REFUSED, "the drive doesn't know this function (exception 1)"},
-                  [2] = {ETHD__SERVO_REFUSED, "the drive doesn't have this address (exception 2)"},
-                  [3] = {ETHD__SERVO_REFUSED, "the drive doesn't take this value (exception 3)"},
-                  [4] = {ETHD__SERVO_FAILED, "the drive failed (exception 4)"},
-                  [5] = {ETHD__SERVO_BUSY, "the drive needs more time (exception 5)"},
-                  [6] = {ETHD__SERVO_BUSY, "the drive is busy (exception 6)"},
-                  [8] = {ETHD__SERVO_FAILED, "the drive's memory has a parity error (exception 8)"},
-                  [10] = {ETHD__SERVO_MISSING, "the gateway has no path to the drive (exception 10)"},
-                  [11] = {ETHD__SERVO_MISSING, "the drive behind the gateway doesn't answer (exception 11)"}};
-
-/* The code of an exception with a meaning; 0: the error is another one. */
-static int exception_of(int error) {
-  const int code = error - ETHD__SERVO_EXCEPTION, count = (int)(sizeof exceptions / sizeof *exceptions);
-  return code > 0 && code < count && exceptions[code].what ? code : 0;
-}
-
 static ethd__servo_outcome outcome(int error) {
-  if (exception_of(error)) return exceptions[exception_of(error)].outcome;
   switch (error) {
-  case 0: return ETHD__SERVO_DONE;
   case ETIMEDOUT:
-  case EAGAIN: return ETHD__SERVO_MISSING;
+  case EAGAIN:
+  case EMBXGPATH:
+  case EMBXGTAR: return ETHD__SERVO_MISSING;
+  case EMBXILFUN:
+  case EMBXILADD:
+  case EMBXILVAL: return ETHD__SERVO_REFUSED;
+  case EMBXSBUSY:
+  case EMBXACK: return ETHD__SERVO_BUSY;
+  case EMBXSFAIL:
+  case EMBXMEMPAR: return ETHD__SERVO_FAILED;
   case EBADF:
   case EPIPE:
   case EIO:
@@ -78,37 +94,72 @@ static void keep_silence(ethd__servo_bus *bus) {
   bus->asked_ns = ethd__clock_now();
 }
 
+static ethd__servo_outcome end(ethd__servo_bus *bus, int got, uint32_t count) {
+  ethd__servo_outcome result = ETHD__SERVO_DONE;
+  if (got != (int)count) {
+    bus->error = got < 0 ? errno : EMBBADDATA;
+    result = outcome(bus->error);
+  }
+  bus->quiet_ns = bus->map->silence > 0 ? ethd__clock_now() : 0;
+  return result;
+}
+
+/* Asks in our framing and returns what libmodbus would: the number of words, or -1 with errno. */
+static int ask(ethd__servo_bus *bus, ethd__servo_frame *f, uint32_t count, uint16_t *words) {
+  ethd__servo_frame_number(bus->map, ++bus->number, f);
+  errno = ethd__servo_ask(bus, f, words);
+  return errno ? -1 : (int)count;
+}
+
+static int own_read(ethd__servo_bus *bus, ethd__servo_span from, uint16_t *words) {
+  ethd__servo_frame f;
+  ethd__servo_frame_read(bus->map, from, &f);
+  return ask(bus, &f, from.count, words);
+}
+
+static int own_write(ethd__servo_bus *bus, ethd__servo_span to, const uint16_t *words) {
+  ethd__servo_frame f;
+  ethd__servo_frame_write(bus->map, to, words, &f);
+  return ask(bus, &f, to.count, NULL);
+}
+
 static ethd__servo_outcome gone(ethd__servo_bus *bus) {
   bus->error = ENOTCONN;
   return ETHD__SERVO_LOST;
 }
 
-static ethd__servo_outcome ask(ethd__servo_bus *bus, ethd__servo_frame *question, uint16_t *words) {
+ethd__servo_outcome ethd__servo_bus_read(ethd__servo_bus *bus, ethd__servo_span from, uint16_t *words) {
   if (bus->fd < 0) return gone(bus);
   keep_silence(bus);
-  ethd__servo_frame_number(bus->map, ++bus->number, question);
-  bus->error = ethd__servo_ask(bus, question, words);
-  bus->quiet_ns = bus->map->silence > 0 ? ethd__clock_now() : 0;
-  return outcome(bus->error);
-}
-
-ethd__servo_outcome ethd__servo_bus_read(ethd__servo_bus *bus, ethd__servo_span from, uint16_t *words) {
-  ethd__servo_frame f;
-  ethd__servo_frame_read(bus->map, from, &f);
-  return ask(bus, &f, words);
+  int at = (int)from.address, count = (int)from.count;
+  int got = !bus->modbus                      ? own_read(bus, from, words)
+            : from.space == ETHD__SERVO_INPUT ? modbus_read_input_registers(bus->modbus, at, count, words)
+                                              : modbus_read_registers(bus->modbus, at, count, words);
+  return end(bus, got, from.count);
 }
 
 ethd__servo_outcome ethd__servo_bus_write(ethd__servo_bus *bus, ethd__servo_span to, const uint16_t *words) {
-  ethd__servo_frame f;
-  ethd__servo_frame_write(bus->map, to, words, &f);
-  return ask(bus, &f, NULL);
+  if (bus->fd < 0) return gone(bus);
+  keep_silence(bus);
+  int got = bus->modbus ? modbus_write_registers(bus->modbus, (int)to.address, (int)to.count, words)
+                        : own_write(bus, to, words);
+  return end(bus, got, to.count);
 }
 
 ethd__servo_outcome ethd__servo_bus_both(ethd__servo_bus *bus, ethd__servo_span to, const uint16_t *out,
                                          ethd__servo_span from, uint16_t *in) {
-  ethd__servo_frame f;
-  ethd__servo_frame_both(bus->map, to, out, from, &f);
-  return ask(bus, &f, in);
+  if (bus->fd < 0) return gone(bus);
+  keep_silence(bus);
+  int got;
+  if (bus->modbus) {
+    got = modbus_write_and_read_registers(bus->modbus, (int)to.address, (int)to.count, out, (int)from.address,
+                                          (int)from.count, in);
+  } else {
+    ethd__servo_frame f;
+    ethd__servo_frame_both(bus->map, to, out, from, &f);
+    got = ask(bus, &f, from.count, in);
+  }
+  return end(bus, got, from.count);
 }
 
 /* ---- after an error ---- */
@@ -135,10 +186,7 @@ ethd__servo_outcome ethd__servo_bus_drain(ethd__servo_bus *bus) {
   return gone(bus);
 }
 
+/* strerror doesn't know libmodbus's own error numbers. */
 const char *ethd__servo_bus_error(const ethd__servo_bus *bus) {
-  if (bus->error == ETHD__SERVO_BAD_CRC) return "an answer's checksum is wrong";
-  if (bus->error == ETHD__SERVO_BAD_ANSWER) return "what came is no answer to the question";
-  if (bus->error > ETHD__SERVO_EXCEPTION)
-    return exception_of(bus->error) ? exceptions[exception_of(bus->error)].what : "an exception without a meaning";
-  return strerror(bus->error);
+  return bus->error >= MODBUS_ENOBASE ? modbus_strerror(bus->error) : strerror(bus->error);
 }

@@ -1,4 +1,5 @@
-/* Questions and answers on a Modbus, one at a time. Called by [main] or by one I/O thread. */
+/* Questions and answers on a Modbus, one at a time: through libmodbus, or in our own framing where libmodbus can't
+   speak. Called by [main] or by one I/O thread. */
 #ifndef ETHD__SERVO_BUS_H
 #define ETHD__SERVO_BUS_H
 
@@ -16,10 +17,11 @@ typedef enum ethd__servo_outcome {
 
 typedef struct ethd__servo_bus {
   const ethd__servo_map *map;
+  void *modbus;     /* NULL where our own framing is used */
   int fd;           /* -1: closed */
-  uint16_t number;  /* of the last question; tcp has it in the answer */
+  uint16_t number;  /* of the last question in our own framing; tcp has it in the answer */
   bool at_once;     /* the line delivers each byte at once; true of every tcp connection */
-  int error;        /* errno of the last failure, or what frame.h names */
+  int error;        /* errno of the last failure, libmodbus's included */
   int64_t quiet_ns; /* CLOCK_MONOTONIC: when the line was left */
   int64_t asked_ns; /* CLOCK_MONOTONIC: just before the last question went out */
 } ethd__servo_bus;
@@ -45,7 +47,7 @@ ethd__servo_outcome ethd__servo_bus_drain(ethd__servo_bus *bus);
 /* The last failure as a sentence for people. */
 const char *ethd__servo_bus_error(const ethd__servo_bus *bus);
 
-/* Connects map->port, sets it up, and gives its descriptor. */
+/* Connects map->port, sets it up, and gives its descriptor; libmodbus would take an unknown baud for 9600. */
 ETHD_MUST_CHECK ethd_status ethd__servo_port_open(const ethd__servo_map *map, int *fd, bool *at_once,
                                                   char message[ETHD_MESSAGE_MAX]);
 

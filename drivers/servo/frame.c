@@ -1,5 +1,6 @@
 #include "servo/frame.h"
 
+#include <modbus/modbus.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -106,6 +107,8 @@ int ethd__servo_frame_whole(const ethd__servo_map *map, const ethd__servo_frame 
   return answer[at] & REFUSED ? head(map) + 3 + tail(map) : question->answer;
 }
 
+static int refusal(uint8_t code) { return code >= 1 && code <= 11 ? MODBUS_ENOBASE + code : EMBBADEXC; }
+
 /* True when the answer has the question's unit, function and number, and as many bytes as were asked for. */
 static bool is_to(const ethd__servo_map *map, const ethd__servo_frame *q, const uint8_t *a, int length) {
   int h = head(map), read = q->bytes[h + 1] != WRITE;
@@ -118,9 +121,9 @@ static bool is_to(const ethd__servo_map *map, const ethd__servo_frame *q, const 
 int ethd__servo_frame_take(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
                            int length, uint16_t *words) {
   const uint8_t *a = answer + head(map);
-  if (!head(map) && get(answer + length - 2) != checksum(map, answer, length - 2)) return ETHD__SERVO_BAD_CRC;
-  if (!is_to(map, question, answer, length)) return ETHD__SERVO_BAD_ANSWER;
-  if (a[1] & REFUSED) return ETHD__SERVO_EXCEPTION + a[2];
+  if (!head(map) && get(answer + length - 2) != checksum(map, answer, length - 2)) return EMBBADCRC;
+  if (!is_to(map, question, answer, length)) return EMBBADDATA;
+  if (a[1] & REFUSED) return refusal(a[2]);
   for (int i = 0; words && a[1] != WRITE && i < a[2] / 2; i++) words[i] = (uint16_t)get(a + 3 + 2 * i);
   return 0;
 }

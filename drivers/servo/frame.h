@@ -1,4 +1,6 @@
-/* Modbus questions as bytes, and their answers (application protocol V1.1b3, over serial line V1.02, over TCP).
+/* Modbus questions as bytes, for what libmodbus doesn't speak: a serial line whose checksum has its high byte first, or
+   on which one's own bytes come back; for several units on one bus; and for the guardian, which has no time to ask a
+   library.
 
      rtu   unit | function, data | checksum              checksum low byte first by the standard
      tcp   number, 0, length | unit | function, data */
@@ -8,9 +10,6 @@
 #include "servo/map.h"
 
 #define ETHD__SERVO_FRAME_MAX 264
-
-/* What an answer can be beside good, over any errno. An exception has the drive's code, 0 to 255, added. */
-enum { ETHD__SERVO_BAD_CRC = 10000, ETHD__SERVO_BAD_ANSWER, ETHD__SERVO_EXCEPTION };
 
 typedef struct ethd__servo_frame {
   uint8_t bytes[ETHD__SERVO_FRAME_MAX];
@@ -37,8 +36,8 @@ bool ethd__servo_frame_begins(const ethd__servo_map *map, const ethd__servo_fram
 int ethd__servo_frame_whole(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
                             int length);
 
-/* Stores a whole answer's words; `words` is NULL where none are awaited. Returns 0 or what is wrong; BAD_ANSWER: it
-   answers something else. [any] */
+/* Stores a whole answer's words; `words` is NULL where none are awaited. Returns 0 or an errno as libmodbus has it:
+   EMBBADCRC, EMBBADDATA for an answer to something else, EMBXILADD and its like for what the drive refuses. [any] */
 int ethd__servo_frame_take(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
                            int length, uint16_t *words);
 

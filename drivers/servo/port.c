@@ -1,9 +1,10 @@
-/* Opens sockets and serial lines. */
+/* Opens sockets and serial lines ourselves, because libmodbus silently takes an unknown baud for 9600. */
 #include <errno.h>
 #include <netdb.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <string.h>
+#include <sys/select.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -67,9 +68,17 @@ static ethd_status open_rtu(const ethd__servo_map *map, int *fd, char *message) 
                    map->port, strerror(errno));
 }
 
+/* libmodbus waits in select, which ends the process when a descriptor is FD_SETSIZE or higher. */
+static ethd_status check_number(const ethd__servo_map *map, int fd, char *message) {
+  if (fd < FD_SETSIZE) return ETHD_OK;
+  return ethd__say(message, ETHD_E_DEVICE, "%s: got descriptor %d, under %d is needed: open the bus before other files",
+                   map->port, fd, FD_SETSIZE);
+}
+
 ethd_status ethd__servo_port_open(const ethd__servo_map *map, int *fd, bool *at_once, char message[ETHD_MESSAGE_MAX]) {
   *fd = -1;
   ethd_status status = map->transport == ETHD__SERVO_TCP ? open_tcp(map, fd, message) : open_rtu(map, fd, message);
+  if (!status) status = check_number(map, *fd, message);
   if (status && *fd >= 0) close(*fd);
   if (status) *fd = -1;
   *at_once = map->transport == ETHD__SERVO_TCP || (*fd >= 0 && ethd__line_low_latency(*fd));

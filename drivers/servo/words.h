@@ -1,4 +1,4 @@
-/* Converts words to numbers and back. */
+/* Converts words to numbers and back. libmodbus's own float helpers aren't each other's inverse in every build. */
 #ifndef ETHD__SERVO_WORDS_H
 #define ETHD__SERVO_WORDS_H
 

@@ -43,7 +43,8 @@ typedef enum ethd_reaction {
 /* X(row, NAME, first reaction, second, bound, sentence); bound: how soon it is noticed, in words; "x every": its
    register is read in each `every`-th exchange, as the servo's map says. SPEED looks at the speed that is estimated,
    which lags behind the true one by ethd_velocity_lag: 1.3 ms by the low-pass that is the default, half a tick by
-   differences. REPLY_MISSING counts from when the map's `response` is over. Event values: FINITE kind of law; LAW
+   differences. REPLY_MISSING counts from when the map's `response` is over, and so does REPLY_BAD where libmodbus waits
+   for the rest of noise that is shorter than an answer (drivers/servo/README.md). Event values: FINITE kind of law; LAW
    100 kind - status; BUDGET ns; SPEED m/s; INPUT which, ETHD_HAVE_* or 0 for q; else 1 where the second reaction is
    due, 0 where not. TORQUE and TORQUE_RATE are reported only when they last: over 0.1 s, over 20 ticks. */
 #define ETHD_FAULTS(X)                                                                                    \

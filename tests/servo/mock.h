@@ -1,4 +1,4 @@
-/* A drive on a Modbus of our own making, with its own frames, that can be made to misbehave: on a TCP port or
+/* A drive on a Modbus of our own making, independent of libmodbus, that can be made to misbehave: on a TCP port or
    behind a pseudo terminal, on a thread of its own. Its registers are those of apps/config/plant.map. */
 #ifndef ETHD_TESTS_SERVO_MOCK_H
 #define ETHD_TESTS_SERVO_MOCK_H

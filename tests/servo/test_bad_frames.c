@@ -2,6 +2,7 @@
    framing and of the proximity ring's. Nothing damaged is taken for an answer or a frame, and how many cases there were
    is asserted, so that none is left out unseen. The answers are put together here, with the checksum of the test's own
    drive. */
+#include <modbus/modbus.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -27,7 +28,7 @@ enum { WAITS = -1, TAKEN = 0 }; /* or the errno of a refusal */
 static int hear(const uint8_t *bytes, int length) {
   memset(words, 0xA5, sizeof words);
   for (int got = 1, whole = 0; got <= length; got++) {
-    if (!ethd__servo_frame_begins(&map, &question, bytes, got)) return ETHD__SERVO_BAD_ANSWER;
+    if (!ethd__servo_frame_begins(&map, &question, bytes, got)) return EMBBADDATA;
     if (!whole) whole = ethd__servo_frame_whole(&map, &question, bytes, got);
     if (whole == got) return ethd__servo_frame_take(&map, &question, bytes, got, words);
   }

@@ -1,5 +1,6 @@
-/* Modbus frames against frames that others published, and against every kind of wrong
+/* Modbus frames of our own against frames that others published, and against every kind of wrong
    answer. */
+#include <modbus/modbus.h>
 #include <string.h>
 
 #include "servo/frame.h"
@@ -104,24 +105,24 @@ TEST(test_wrong_answers) {
     memcpy(bad, good, 9);
     bad[bit / 8] ^= (uint8_t)(1 << bit % 8);
     words[0] = 0xA5A5;
-    ck_assert_int_eq(ethd__servo_frame_take(&map, &f, bad, 9, words), ETHD__SERVO_BAD_CRC);
+    ck_assert_int_eq(ethd__servo_frame_take(&map, &f, bad, 9, words), EMBBADCRC);
     ck_assert_uint_eq(words[0], 0xA5A5);
   }
   map.crc = ETHD__SERVO_CRC_LOW_FIRST; /* the standard's order isn't this drive's */
-  ck_assert_int_eq(ethd__servo_frame_take(&map, &f, good, 9, words), ETHD__SERVO_BAD_CRC);
+  ck_assert_int_eq(ethd__servo_frame_take(&map, &f, good, 9, words), EMBBADCRC);
   map.crc = ETHD__SERVO_CRC_HIGH_FIRST;
   for (int i = 0; i < 3; i++) { /* sealed, but of another unit, function, or length */
     uint8_t other[9];
     memcpy(other, good, 9);
     other[i] = i == 2 ? 2 : 4;
     seal(other, 9);
-    ck_assert_int_eq(ethd__servo_frame_take(&map, &f, other, 9, words), ETHD__SERVO_BAD_ANSWER);
+    ck_assert_int_eq(ethd__servo_frame_take(&map, &f, other, 9, words), EMBBADDATA);
   }
   seal(refused, 5);
   ck_assert_int_eq(ethd__servo_frame_whole(&map, &f, refused, 5), 5);
-  ck_assert_int_eq(ethd__servo_frame_take(&map, &f, refused, 5, words), ETHD__SERVO_EXCEPTION + 2);
+  ck_assert_int_eq(ethd__servo_frame_take(&map, &f, refused, 5, words), EMBXILADD);
   ethd__servo_frame_write(&map, (ethd__servo_span){map.unit, 0, 0x5308, 2}, (const uint16_t[]){1, 2}, &f);
   uint8_t elsewhere[] = {1, 16, 0x53, 0x09, 0, 2, 0, 0};
   seal(elsewhere, 8);
-  ck_assert_int_eq(ethd__servo_frame_take(&map, &f, elsewhere, 8, NULL), ETHD__SERVO_BAD_ANSWER);
+  ck_assert_int_eq(ethd__servo_frame_take(&map, &f, elsewhere, 8, NULL), EMBBADDATA);
 }

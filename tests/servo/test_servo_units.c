@@ -85,7 +85,7 @@ TEST_LOOP(test_each_has_its_own, 0, 4) {
   end();
 }
 
-/* An answer from another station is none, over tcp, too. */
+/* An answer from another station is none, over tcp, too, where libmodbus wouldn't look. */
 TEST_LOOP(test_another_station, 0, 2) {
   begin(_i, ETHD__SERVO_SEPARATE);
   enable();
