@@ -48,7 +48,9 @@ mkdir "$folder/people"
 for file in "$people"/*_free.csv; do
   case $file in *_D70_s01_* | *_ND_s02_* | *\**) ;; *) cp "$file" "$folder/people" ;; esac
 done
-if [ "$(ls "$folder/people" | wc -l)" = 99 ]; then
+if [ -n "${SAN:-}" ]; then
+  :
+elif [ "$(ls "$folder/people" | wc -l)" = 99 ]; then
   goals 'held held missed held missed' 0.008 --finger "$folder/people"
   goals 'held held held missed missed' 0.030 --finger "$folder/people"
   for delay in 0.008 0.030; do goals 'held held held held held' "$delay" --gap 0.1 --finger "$folder/people"; done
@@ -73,7 +75,7 @@ awk -F, 'NR == 1 { ok = $0 == "t_s,since_touch_s,plate_m,commanded_m,finger_m,v_
   END { exit !(ok && met && !early) }' "$folder/traces/approach-0.4.csv" || fail "the trace"
 # Without the mass, predictive is offset; a gap, a delay, a wall, a rate and a key of the law matter.
 "$tap" --arm ur5e --taps 3 --transition offset,predictive | awk '/^(offset|predictive) / { $1 = ""; print }' | uniq | wc -l | grep -qx 1 || fail "predictive isn't offset"
-for option in --gap=0.02 --delay=0.03 --wall=0.9,0.35,-0.25,-0.5 --rate=30 --set=transition.effort=0.3; do
+for option in --gap=0.02 --delay=0.03 --bias=-0.013 --wall=0.9,0.35,-0.25,-0.5 --rate=30 --set=transition.effort=0.3; do
   run "$option" --csv "$folder/b.csv" >/dev/null
   cmp -s "$folder/a.csv" "$folder/b.csv" && fail "$option changes nothing"
 done
