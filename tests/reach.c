@@ -4,6 +4,7 @@
    to it, and its speed, both along the normal. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "arm/finger.h"
 #include "ethd/config.h"

@@ -58,8 +58,7 @@ static void inverse(const mujoco_arm *a, double (*j)[JOINTS], const double task[
 static void move_joints(mujoco_arm *a, const double *before, double *dq) {
   const double *x = a->told->site_xpos + 3 * a->plate, was[3] = {x[0], x[1], x[2]};
   double task[ROWS], j[ROWS][JOINTS];
-  look(a, a->told, j, task);
-  inverse(a, j, task, dq);
+  look(a, a->told, j, task), inverse(a, j, task, dq);
   (void)ethd_guard_joints(&a->limits, a->told->qpos, before, dq);
   mju_addToScl(a->told->qpos, dq, a->period, a->n);
   mj_kinematics(a->model, a->told), mj_comPos(a->model, a->told);
@@ -101,8 +100,9 @@ static ethd_status start(void *device) {
   mujoco_arm *a = device;
   mj_resetDataKeyframe(a->model, a->real, 0), mj_forward(a->model, a->real), mj_copyData(a->told, a->model, a->real);
   mju_zero(a->past[0], PAST * JOINTS), mju_zero(a->servo_v, JOINTS), mju_zero3(a->v);
-  mju_copy(a->servo_q, a->real->qpos, a->n);
-  return a->tick = a->safe = 0, ETHD_OK;
+  mju_copy(a->servo_q, a->real->qpos, a->n), a->tick = 0;
+  a->safe = 0;
+  return ETHD_OK;
 }
 
 static ethd_status read_arm(void *device, int64_t now_ns, ethd_space_sense *out) ETHD_RT {

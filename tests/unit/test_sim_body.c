@@ -1,5 +1,6 @@
 /* The plant's motion against closed forms, energy, and itself at other steps. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "sim/body.h"
