@@ -1,7 +1,7 @@
 /* A closed mesh as the virtual world: assimp reads the file (.obj, .stl, .ply, ...; m; triangles counterclockwise from
    outside), Embree finds what is near a point. For mesh.c and, with -DMESH, arm.c. */
-#ifndef MESH_H
-#define MESH_H
+#ifndef ETHD__APPS_EXAMPLES_MESH_H
+#define ETHD__APPS_EXAMPLES_MESH_H
 
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
@@ -14,7 +14,7 @@
 #include <ethd/ethd.h>
 #include <stdio.h>
 
-#define BEYOND 0.01 /* m: surfaces that are farther than the nearest by more than this are left out */
+#define DEEPER 0.01 /* m: surfaces that are farther than the nearest by more than this are left out */
 
 typedef struct mesh {
   const struct aiScene *file;
@@ -88,7 +88,7 @@ static bool visit(struct RTCPointQueryFunctionArguments *args) {
   const double nearer = s->distance - distance;
   if (nearer > 1e-12 || (nearer > -1e-12 && fabs(height) > s->height))
     s->nearest = at, s->distance = distance, s->height = fabs(height), s->inside = height < 0;
-  args->query->radius = fminf(args->query->radius, (float)(distance + BEYOND));
+  args->query->radius = fminf(args->query->radius, (float)(distance + DEEPER));
   return true;
 }
 
@@ -102,7 +102,7 @@ static inline uint32_t surfaces_near(const mesh *world, ethd_vec3 x, double rang
   if (!(s.distance <= range)) return 0;
   out[0] = s.nearest;
   uint32_t count = 1;
-  for (uint32_t i = 0; i < s.count && s.foot_distance[i] <= s.distance + BEYOND; i++)
+  for (uint32_t i = 0; i < s.count && s.foot_distance[i] <= s.distance + DEEPER; i++)
     if ((ethd_vec3_dot(s.feet[i].n, ethd_vec3_sub(s.feet[i].point, x)) < 0) == s.inside) out[count++] = s.feet[i];
   return count;
 }
