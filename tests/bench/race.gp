@@ -17,6 +17,7 @@ set format "10^{%T}"
 set xlabel "run time, ns"
 set ylabel "error"
 set key top right samplen 1 noenhanced font "Sans,11"
+if (p == 1) { set key tmargin center horizontal }
 rows = p > 3 ? 2 : 1
 set multiplot layout rows,(p + rows - 1)/rows
 do for [k = 1:p] {
