@@ -9,7 +9,7 @@
 #include "fp_mode.h"
 #include "maths/two_waves.h"
 
-/* What differs from arm to arm. A new one gets a row here and a name in ethd_mechanism. */
+/* The differences between arms. A new arm gets a row here and a name in ethd_mechanism. */
 typedef struct arm_row {
   const char *name;
   void (*pose)(const ethd_arm *arm, const double q[2], ethd_pose *out) ETHD_RT;
@@ -21,7 +21,7 @@ typedef struct arm_row {
 
      (det adj(J) + lambda^2 J^T) / (det^2 + lambda^2 tr(J J^T) + lambda^4),
 
-   in which nothing cancels and lambda = 0 gives adj(J) / det. */
+   which has no cancellation, and with lambda = 0 is adj(J) / det. */
 static void invert_damped(const double j[4], double det, double w0, double out[4]) {
   double trace = j[0] * j[0] + j[1] * j[1] + j[2] * j[2] + j[3] * j[3];
   double share = 1 - fabs(det) / w0;
@@ -46,7 +46,7 @@ static void invert(const double j[4], double w0, double out[4]) {
 
 /* ---- two links ---- */
 
-/* a and b are the links as vectors, at their angles from the x axis. With a relative q2 link 2 turns with joint 1. */
+/* a and b are the links as vectors, at their angles from the x axis. With a relative q2 link 2 rotates with joint 1. */
 static inline void pose_of_links(const ethd_arm *arm, two angles, bool relative, ethd_pose *out) {
   two_waves w = two_sincos(angles);
   ethd_vec a = {arm->link1 * w.cosine[0], arm->link1 * w.sine[0]};
@@ -147,7 +147,7 @@ void ethd_arm_reach(const ethd_arm *arm, double *inner, double *outer) {
   rows[arm->mechanism].reach(arm, inner, outer);
 }
 
-/* ---- what moves it ---- */
+/* ---- dynamics ---- */
 
 ethd_dynamics ethd_dynamics_unknown(void) {
   const double unknown = (double)NAN;

@@ -6,7 +6,7 @@
 
 #include "ethd/base.h"
 
-/* A number that was found and the range that is allowed; NaN where there is nothing to say. */
+/* A found number and its allowed range; NaN for those that don't apply. */
 typedef struct ethd__found {
   double value, min, max;
 } ethd__found;

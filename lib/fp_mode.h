@@ -1,9 +1,9 @@
 /* The processor's floating-point mode: the library computes rounded to nearest, with subnormal numbers as 0 (FTZ, DAZ)
-   and without traps, whatever mode the caller's thread is in. A function that promises this takes the mode when it
-   begins and gives the caller's back when it ends. [any, rt-safe]
+   and without traps, in any mode of the caller's thread. A function that promises this sets the mode when it begins and
+   restores the caller's when it ends. [any, rt-safe]
 
-   x87, which strtod asks for the rounding and a law may use, has a word of its own. It follows where the other one
-   differs: the C library sets rounding and traps of both. */
+   x87, from which strtod reads the rounding mode and which a law may use, has its own word. It is set only if the other
+   word differs, since the C library sets rounding and traps of both. */
 #ifndef ETHD__FP_MODE_H
 #define ETHD__FP_MODE_H
 
@@ -52,7 +52,7 @@ static inline uint64_t ethd__fp_now(void) ETHD_RT { return 0; }
 static inline void ethd__fp_set(uint64_t word) ETHD_RT { (void)word; }
 #endif
 
-/* Returns true where the thread is in the library's mode, as in all of our programs. */
+/* Returns true if the thread is in the library's mode, as in all of our programs. */
 static inline bool ethd__fp_is_own(void) ETHD_RT {
   return __builtin_expect((ethd__fp_now() & ETHD__FP_BITS) == ETHD__FP_MODE, 1);
 }
@@ -66,9 +66,8 @@ static inline void ethd__x87_set(uint16_t word) ETHD_RT { __asm__ volatile("" : 
 #define ETHD__X87_AT 32                    /* on, where it has an x87 */
 #define ETHD__X87_MODE 0x37f               /* to nearest, to 64 bits, without traps */
 
-/* Takes the library's mode and returns what ethd__fp_give takes. What is done in between stands in a function that
-   isn't inline, so that no arithmetic moves out; setting the x87's word, which comes in between, holds calls that only
-   read. */
+/* Sets the library's mode and returns the argument of ethd__fp_give. The code in between must be a function that isn't
+   inline, so that no arithmetic moves out; setting the x87's word keeps calls that only read from moving. */
 static inline uint64_t ethd__fp_take(void) ETHD_RT {
   if (ethd__fp_is_own()) return 0;
   const uint64_t callers = ethd__fp_now() | (uint64_t)ethd__x87_now() << ETHD__X87_AT;

@@ -16,7 +16,7 @@ grep -q '^watchdog  at risk' "$folder/sim" || fail "the simulated device has got
 [ "$(grep -c ' not asked ' "$folder/still")" = 6 ] || fail "it may not move: $(cat "$folder/still")"
 # a ring that meets its finger stands still with torque and without
 "$conform" --config "$folder/held.ini" --virtual --move --push 0.3 >"$folder/held" 2>&1 || fail "held: $(cat "$folder/held")"
-grep -q '^watchdog  not asked .*in its way' "$folder/held" || fail "held: $(cat "$folder/held")"
+grep -q '^watchdog  not asked .*an obstacle' "$folder/held" || fail "held: $(cat "$folder/held")"
 printf '[device]\ndriver = hello\ncolour = red\n' >"$folder/bad.ini"
 "$conform" --config "$folder/bad.ini" >"$folder/bad" 2>&1 && fail "a setting that hello hasn't passes"
 grep -q 'bad.ini:3: device.colour: hello has no settings' "$folder/bad" || fail "$(cat "$folder/bad")"

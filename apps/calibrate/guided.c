@@ -42,7 +42,7 @@ static void add(sums *to, const ethd__ring_frame *f) {
   }
 }
 
-/* Drops the frames that came before a step, which are old. */
+/* Drops the old frames from before a step. */
 static void forget(guided *g) {
   uint8_t bytes[4096];
   while (ethd__ring_port_read(&g->port, 0, bytes, sizeof bytes) > 0) {
@@ -72,7 +72,7 @@ static ethd_status collect(guided *g, sums *out) {
   return ETHD_OK;
 }
 
-/* Works out the means; returns the sensor whose counts spread most beyond what is allowed, or -1. */
+/* Computes the means; returns the sensor whose counts exceed the allowed spread most, or -1. */
 static int means(const sums *of, double counts[ETHD_RAYS]) {
   int moved = -1;
   double worst = 1;
@@ -96,7 +96,7 @@ static ethd_status measure(guided *g, double counts[ETHD_RAYS]) {
     printf("  sensor %d isn't steady: measured again\n", moved);
     fflush(stdout);
   }
-  printf("  not steady; taken as it is\n");
+  printf("  not steady; used nevertheless\n");
   return ETHD_OK;
 }
 

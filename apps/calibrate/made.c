@@ -26,7 +26,7 @@ ethd__calibration ethd__made_ring(uint64_t seed) {
   return c;
 }
 
-/* Returns the mean of many readings, each a whole number that the chip can count. */
+/* Returns the mean of many readings, each a whole number of the chip's range. */
 static double mean_counts(double light, double noise, int frames, ethd__sim_key key, uint32_t stream) {
   double sum = 0;
   for (int i = 0; i < frames; i++)

@@ -1,4 +1,4 @@
-/* A simulated ring, whose true laws are known, so that the result of a calibration can be judged. */
+/* A simulated ring with known true laws, to judge the result of a calibration. */
 #ifndef ETHD__APPS_CALIBRATE_MADE_H
 #define ETHD__APPS_CALIBRATE_MADE_H
 

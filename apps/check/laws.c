@@ -93,7 +93,7 @@ static void show_drivers(ethd_csv_out *csv) {
 
 /* ---- laws ---- */
 
-/* Plugins are loaded as a configuration loads them. */
+/* Loads plugins as a configuration does. */
 static ethd_config *load(const ethd__listing *what) {
   char message[ETHD_MESSAGE_MAX];
   ethd_config *config;

@@ -1,4 +1,5 @@
-/* Prints the lists of `ethd-check --laws` and `--drivers`: every law, method and driver that a configuration can name. */
+/* Prints the lists of `ethd-check --laws` and `--drivers`: every law, method and driver that a configuration can
+   name. */
 #ifndef ETHD__APPS_CHECK_LAWS_H
 #define ETHD__APPS_CHECK_LAWS_H
 
@@ -6,7 +7,7 @@
 
 #define PLUGINS_MAX 64
 
-/* What to list. */
+/* The lists to print. */
 typedef struct ethd__listing {
   bool laws, drivers;               /* the built-in ones */
   const char *plugins[PLUGINS_MAX]; /* files whose laws are listed with `laws` */

@@ -6,7 +6,7 @@
 #include "bounds/stability.h"
 #include "check/report.h"
 
-/* These conditions are sufficient, not necessary, so no bound is exceeded where they fail. */
+/* These conditions are sufficient, not necessary: if they fail, no bound counts as exceeded. */
 int ethd__report_passivity(const ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
   ethd__bounds_gains wall;

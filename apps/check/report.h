@@ -28,9 +28,9 @@ typedef struct ethd__subject {
 /* Prints the drivers' remarks and the effective limits. is_open: the device itself was read. */
 void ethd__report_drivers(const ethd_config *config, ethd_device *device, bool is_open);
 
-/* Sets the delay that no option, driver or plant gives. Of an open device it measures the longest spacing of samples.
-   Otherwise, or if too few samples come, it takes the longest spacing that the limits allow. `figures` says which.
-   Nothing is enabled. */
+/* Sets the delay if no option, driver or plant gives it. With an open device it measures the longest spacing of
+   samples. Otherwise, or if too few samples come, it uses the longest spacing that the limits allow. `figures` says
+   which. Nothing is enabled. */
 void ethd__find_delay(const ethd_setup *setup, ethd_device *device, bool is_open, ethd__figures *figures);
 
 /* Fills `felt`, and prints what is known. */
@@ -52,8 +52,8 @@ int ethd__report_stop(const ethd__subject *subject);
 int ethd__report_threshold(const ethd__subject *subject);
 int ethd__report_tick(const ethd__subject *subject);
 
-/* Prints how far before a wall the device has to react, and whether the gap is enough; returns how many bounds are
-   exceeded. */
+/* Prints the distance before a wall at which the device has to react, and whether the gap is enough; returns how many
+   bounds are exceeded. */
 int ethd__report_space(const ethd_space_setup *setup);
 
 /* Writes the velocity estimator as "lowpass, cutoff 133.4 Hz". */

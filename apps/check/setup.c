@@ -74,7 +74,7 @@ static void section(const ethd_config *c, const char *name) {
   }
 }
 
-/* The rest prints the further contents of sections. */
+/* The following functions print the other contents of sections. */
 static void difference(const ethd_config *c) {
   printf("; d_beta = R_r - R_f,max = %.10g m\n", c->setup.ring_radius - c->setup.finger_radius_max);
 }

@@ -1,12 +1,12 @@
-/* How far before a wall a device in space has to react, in closed form. */
+/* The distance before a wall at which a device in space has to react, in closed form. */
 #include <math.h>
 #include <stdio.h>
 
 #include "check/report.h"
 
 typedef struct reaction {
-  double a;    /* m/s^2 that the device brakes with; NaN: not known */
-  double late; /* s from a command to its motion, and the period for which it is held */
+  double a;    /* m/s^2: the device's deceleration; NaN: not known */
+  double late; /* s from a command to its motion, plus the period for which it is held */
   double gap;  /* m between finger and effector */
 } reaction;
 
@@ -15,7 +15,7 @@ static double param(const ethd_space_setup *s, const char *name, double otherwis
   return isnan(value) ? otherwise : value;
 }
 
-/* As the law `approach` sees the device. */
+/* The device's reaction in the law `approach`. */
 static reaction reaction_of(const ethd_space_setup *s) {
   const ethd_ability *able = &s->ability;
   const double limit = s->kind == ETHD_SPACE_VELOCITY ? s->acceleration : (double)INFINITY;
@@ -27,7 +27,7 @@ static reaction reaction_of(const ethd_space_setup *s) {
 
 static double distance(const reaction *r, double v) { return v * r->late + v * v / (2 * r->a); }
 
-/* Returns the speed whose distance is d, in the form without a difference of near numbers. */
+/* Returns the speed whose distance is d, in the form without cancellation. */
 static double speed_of(const reaction *r, double d) {
   return 2 * d / (r->late + sqrt(r->late * r->late + 2 * d / r->a));
 }

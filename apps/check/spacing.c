@@ -9,8 +9,8 @@
 #include "clock.h"
 
 #define DURATION 0.5 /* s of measuring */
-#define SAMPLES 5    /* fewer say nothing */
-#define PAUSE 200000 /* ns after a service that had nothing to do */
+#define SAMPLES 5    /* least number of samples */
+#define PAUSE 200000 /* ns after a service without work */
 
 typedef struct io {
   ethd_device *device;

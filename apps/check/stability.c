@@ -16,7 +16,7 @@ typedef struct looked_at {
   const ethd__bounds_device *device;
   const char *const *units;        /* of stiffness and damping in the configuration */
   const char *stiffness, *damping; /* their keys */
-  char what[48];                   /* stands in its first row only */
+  char what[48];                   /* printed in its first row only */
   int axis;
   ethd__sampled_loop loop;
   double stiffness_scale, damping_scale; /* from the ring to the configuration's unit */
@@ -50,7 +50,7 @@ static void print_number(looked_at *l, const ethd__bounds_row *r) {
   }
 }
 
-/* ---- what to change ---- */
+/* ---- proposed changes ---- */
 
 static const char *quicker(ethd_velocity_method method) {
   switch (method) {
@@ -69,7 +69,7 @@ static double most_of(const ethd__bounds_row *rows, int count, ethd__bounds_numb
   return 0;
 }
 
-/* An unstable loop whose gain is below its largest stable value needs more of that gain. */
+/* An unstable loop with a gain below the gain's largest stable value needs more of this gain. */
 static void say_change(const looked_at *l, double most_k, double most_b) {
   const ethd__sampled_loop *loop = &l->loop;
   printf("  to change:           ");
@@ -213,8 +213,8 @@ int ethd__report_stability(const ethd_setup *setup, const ethd__bounds_device *d
   return exceeded + report_axes(setup, device, ETHD_LOOP_BRAKING, ethd__bounds_names[ETHD_LOOP_BRAKING]);
 }
 
-/* The guard's stop is judged like any other damping. It knows the device by the setup's dynamics, which may differ from
-   the figures that the loop is judged by. */
+/* The guard's stop is judged like any other damping. It uses the setup's dynamics, which may differ from the device's
+   figures here. */
 int ethd__report_guard(const ethd_setup *setup, const ethd__bounds_device *device) {
   const ethd_limits *limits = &setup->limits;
   const double most = isfinite(limits->stop_time) ? limits->stop_time : ETHD_STOP_TIME;

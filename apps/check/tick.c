@@ -64,7 +64,7 @@ int ethd__report_tick(const ethd__subject *s) {
     return 0;
   }
   qsort(ns, TICKS, sizeof *ns, ascending);
-  /* without realtime the worst is the machine's business, not the tick's */
+  /* without realtime the worst case depends on the machine, not on the tick */
   double judged = 1e-9 * ns[is_realtime() ? TICKS - 1 : TICKS - 1 - TICKS / 1000];
   double most = fmin(setup->period, setup->limits.step_time);
   printf("  p50 %.2f us, p99.9 %.2f us, max %.1f us, of %s = %.4g us; %s\n", 1e-3 * ns[TICKS / 2],

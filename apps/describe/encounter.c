@@ -6,7 +6,7 @@
 
 /* A hand that approaches, stops behind the wall, waits, and returns on the same path: times in s, lengths in m. */
 #define STEP 1e-3
-#define BEFORE 0.05 /* of the way, at full speed, before the touch */
+#define BEFORE 0.05 /* travelled at full speed before the touch */
 #define BEYOND 0.002
 #define STOPPING 0.04
 #define WAITING 0.12

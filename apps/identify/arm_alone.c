@@ -7,7 +7,7 @@
 
 #define STEP_ANGLE 1e-6 /* rad, and */
 #define STEP_SPEED 1e-4 /* rad/s: step of a state for slopes by finite differences */
-#define STIFF 1e4       /* 1/s: friction that stops a joint faster would take the simulator thousands of steps a tick */
+#define STIFF 1e4       /* 1/s: friction that stops a joint faster would need thousands of simulator steps a tick */
 
 int ethd__arm_states(const ethd_plant *plant) {
   return isfinite(plant->stiffness) ? ETHD__STATE_MOST : ETHD__STATE_RIGID;
@@ -31,7 +31,7 @@ void ethd__arm_try_all(const ethd__shooting *p, const ethd__fit_window *w, const
     for (int k = 0; k < w->rows; k++) trials[i].out[k] = measured[k] - trials[i].out[k];
 }
 
-/* Returns whether the transmission is observable: its oscillation must be slower than half the sampling rate. */
+/* Returns whether the transmission is observable: its frequency must be below half the sampling rate. */
 static bool is_seen(const ethd__evidence *e, const ethd_plant *x, double least) {
   double reduced = x->motor_mass * (1 - x->motor_mass / least), w = sqrt(x->stiffness / reduced);
   return x->stiffness > 1 && w * e->period < M_PI && x->damping > -0.1 && x->damping < 4 * reduced * w;

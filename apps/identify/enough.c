@@ -10,7 +10,7 @@
 #define LEAST_WAY 20 /* counts, or as many thousandths of a rad of ideal encoders */
 #define CLIPPED 0.9
 
-/* Returns how many windows there are; *way: rad that both joints go in them. */
+/* Returns the number of windows; *way: rad, total motion of both joints in them. */
 static size_t windows_of(const ethd__evidence *e, double *way) {
   size_t windows = 0, whole = (size_t)rint(ETHD__WINDOW / e->period);
   *way = 0;

@@ -4,7 +4,7 @@
 
 #include "identify/evidence.h"
 
-/* If they don't suffice, ends the program with a line on what is missing and how to record it. count: rad of an
+/* If they don't suffice, ends the program with a line on the missing data and how to record them. count: rad of an
    encoder's count, 0 if it is ideal. */
 void ethd__evidence_enough(const ethd__evidence *evidence, double count);
 

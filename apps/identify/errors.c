@@ -7,8 +7,8 @@
 #include "identify/fit.h"
 
 #define N ETHD__UNKNOWNS
-#define FEW 16       /* windows: a recording with fewer isn't fitted by itself */
-#define ALONE 20     /* evaluations of the fit of a recording by itself */
+#define FEW 16       /* windows: a recording with fewer isn't fitted alone */
+#define ALONE 20     /* evaluations of the fit of one recording alone */
 #define STRANGE 0.05 /* recordings whose masses differ by more than this in their logarithm, */
 #define CERTAIN 6    /* and by more than this number of standard errors, belong to different devices */
 
@@ -20,7 +20,8 @@ static double *numbers(size_t count) {
   return at;
 }
 
-/* Inverts a matrix with a unit diagonal by Gauss and Jordan's method. A coordinate that depends on others, up to rounding, gets an infinite variance. */
+/* Inverts a matrix with a unit diagonal by Gauss and Jordan's method. A coordinate that depends on others, up to
+   rounding, gets an infinite variance. */
 static void invert(square_matrix a, square_matrix out, int n) {
   memset(out, 0, sizeof(square_matrix));
   for (int i = 0; i < n; i++) out[i][i] = 1;
@@ -40,7 +41,8 @@ static void invert(square_matrix a, square_matrix out, int n) {
   }
 }
 
-/* Fills each window's gradient (its slopes times its residuals), and the curvature: the sum of the products of slopes. */
+/* Fills each window's gradient (its slopes times its residuals), and the curvature: the sum of the products of
+   slopes. */
 static void gather(const ethd__shooting *p, const double *residual, const double *slopes, square_matrix curvature,
                    square_matrix pulls, double *whole) {
   int n = p->chosen.count;
@@ -67,8 +69,8 @@ static double sandwich(square_matrix bread, square_matrix filling, int n, int i)
   return sum;
 }
 
-/* Fills standard errors and the step of Gauss and Newton. With few windows the fit follows each of them, so their gradients scatter too little; the correction leaves out one window at a time (MacKinnon and White
-   1985). */
+/* Fills standard errors and the step of Gauss and Newton. With few windows the fit follows each of them, so their
+   gradients scatter too little; the correction leaves out one window at a time (MacKinnon and White 1985). */
 static void judge(const ethd__shooting *p, const double *residual, const double *slopes, double *errors, double *step) {
   int n = p->chosen.count;
   double scale[N], whole[N] = {0}, sum = 0;
@@ -113,8 +115,8 @@ void ethd__fit_errors(ethd__shooting *p, double errors[ETHD__UNKNOWNS], double s
 
 /* ---- recordings of another device ---- */
 
-/* Fits the masses to the windows of one recording alone. Gives their logarithms and the standard errors of the logarithms. False:
-   too few windows, or they don't determine the masses. */
+/* Fits the masses to the windows of one recording alone. Gives their logarithms and the standard errors of the
+   logarithms. False: too few windows, or they don't determine the masses. */
 static bool weigh(const ethd__shooting *p, uint32_t recording, double mass[2], double error[2]) {
   double errors[N];
   ethd__shooting own;
@@ -135,7 +137,8 @@ static bool weigh(const ethd__shooting *p, uint32_t recording, double mass[2], d
   return isfinite(error[0] + error[1]);
 }
 
-/* Recordings of different devices have a large common residual, which says little about either; so each is fitted alone. */
+/* Recordings of different devices have a large common residual, which says little about either; so each is fitted
+   alone. */
 bool ethd__fit_stranger(const ethd__shooting *p, uint32_t *recording, double *shift) {
   double mass[2], error[2], first[2], first_error[2], most = STRANGE;
   bool found = false, begun = false;

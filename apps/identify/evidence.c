@@ -19,7 +19,8 @@
 
 /* ---- one recording ---- */
 
-/* Marks the ticks at which the device applied the row's torque: not after a stop or a fault, and not during a soft start. */
+/* Marks the ticks at which the device applied the row's torque: not after a stop or a fault, and not during a soft
+   start. */
 static unsigned char *armed_ticks(const ethd__record_events *events, const ethd_trace *rows, size_t count,
                                   double period) {
   unsigned char *armed = malloc(count + 1);
@@ -45,7 +46,7 @@ static unsigned char *armed_ticks(const ethd__record_events *events, const ethd_
 
 static bool differ(double a, double b) { return !(fabs(a - b) <= 1e-9 * fabs(a)); }
 
-/* Refuses a recording of another arm: what is known about the arm beforehand must agree in all recordings. */
+/* Refuses a recording of another arm: the known properties of the arm must agree in all recordings. */
 static ethd_status agree(ethd__evidence *e, const char *folder, const ethd_setup *s, char *message) {
   if (!e->recording_count) {
     e->arm = s->arm;

@@ -1,4 +1,5 @@
-/* Data of recordings of a moving arm: commands and encoders in each tick, and the times of readings. The true state of a simulation isn't used. All [main]. */
+/* Data of recordings of a moving arm: commands and encoders in each tick, and the times of readings. The true state of
+   a simulation isn't used. All [main]. */
 #ifndef ETHD__APPS_IDENTIFY_EVIDENCE_H
 #define ETHD__APPS_IDENTIFY_EVIDENCE_H
 
@@ -9,7 +10,7 @@
 #include "ethd/config.h"
 #include "ethd/record.h"
 
-#define ETHD__BACK 8 /* ticks before the first that counts whose commands are kept: the longest delay */
+#define ETHD__BACK 8 /* ticks before the first used one whose commands are kept: the longest delay */
 
 /* Consecutive ticks at which the device applied the commanded torque and the finger wasn't near the ring. */
 typedef struct ethd__passage {

@@ -73,7 +73,7 @@ static bool follows(const ethd__evidence *e, const ethd_trace *row) {
          (uint64_t)row[0].tick == (uint64_t)row[-1].tick + 1;
 }
 
-/* NaN isn't. */
+/* Returns false for NaN. */
 static bool is_possible(const double v[2], double most) { return fabs(v[0]) <= most && fabs(v[1]) <= most; }
 
 static bool is_known(const ethd_trace *row) {

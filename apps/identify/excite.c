@@ -16,11 +16,11 @@
 #define DRY 15.0 /* s that a dry run lasts */
 #define TRIES 12 /* dry runs, each with less torque, until the ring stays inside the box, */
 #define LESS 0.75
-#define USED 0.6     /* share of the box that it may use */
+#define USED 0.6     /* share of the box that the ring may use */
 #define SPRING 1.0   /* joint stiffness times box over torque times link */
 #define DAMPING 0.02 /* s: the spring's damping over its stiffness */
 
-/* What a session has done so far. */
+/* A session's results so far. */
 typedef struct seen {
   ethd_vec at;
   double farthest, fastest; /* m, m/s */

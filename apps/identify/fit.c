@@ -6,16 +6,16 @@
 
 #include "cli/cli.h"
 
-#define QUICK 30    /* windows on which starts compete, */
+#define QUICK 30    /* windows for the comparison of starts, */
 #define BRIEF 20    /* evaluations of each */
 #define LONG 60     /* evaluations of the fit */
 #define WINDOWS 480 /* windows of the fit: two minutes */
 #define REACHED 30  /* ticks whose command is beyond a torque limit that show the limit */
-#define ROUGH 1e-6  /* m/s: the simulator's tolerance while starts and models compete, */
-#define FINE 1e-9   /* and for the numbers that are reported */
-#define ENOUGH 1.02 /* times what rounding leaves: a smaller residual has nothing left to explain */
+#define ROUGH 1e-6  /* m/s: the simulator's tolerance for comparisons of starts and models, */
+#define FINE 1e-9   /* and for the reported numbers */
+#define ENOUGH 1.02 /* times the residual of rounding: a smaller residual needs no better model */
 #define SIDE 1.96   /* standard errors to each side of an interval of 95 % */
-#define UNSURE 0.5  /* a number whose interval is wider to one side than this share of what it could be isn't seen */
+#define UNSURE 0.5  /* a number with a half interval over this share of its range isn't determined */
 
 static const ethd__chosen rigid = {
     {ETHD__MASS_X, ETHD__MASS_Y, ETHD__FORCE_LIMIT, ETHD__FRICTION, ETHD__VISCOUS, ETHD__DELAY}, 6};
@@ -107,7 +107,7 @@ static void compliant_starts(contest *c, const ethd_plant *stiff, double force) 
   }
 }
 
-/* ---- what isn't seen ---- */
+/* ---- undetermined numbers ---- */
 
 /* Returns the value of an undetermined number. A torque limit is at least the largest command. */
 static double kept(const ethd__fit *f, const ethd_plant *plant, ethd__unknown u) {
@@ -141,7 +141,8 @@ static size_t reached(const ethd__evidence *e, double limit) {
   return ticks;
 }
 
-/* Leaves a number out of the fit. A transmission's three numbers stay or go together, since one of another device beside two of this one makes no sense. */
+/* Leaves a number out of the fit. A transmission's three numbers stay or go together, since one of another device
+   beside two of this one makes no sense. */
 static void leave(ethd__shooting *p, const ethd_plant *plant, ethd__fit *f, ethd__unknown which) {
   bool together = which >= ETHD__MOTOR_MASS && which <= ETHD__DAMPING;
   ethd__unknown first = together ? ETHD__MOTOR_MASS : which, last = together ? ETHD__DAMPING : which;
@@ -209,7 +210,8 @@ static double rms_of(const ethd__shooting *p, const contest *c) {
   return c->sum > 0 ? sqrt(c->sum / fmax((double)(p->rows - ethd__shooting_states(p)), 1)) : 0;
 }
 
-/* The starts of both models compete on some windows; the better model is fitted to all. If the residual of a rigid arm is as small as rounding, `floor`, a transmission isn't tried. */
+/* Compares the starts of both models on some windows; the better model is fitted to all. If the residual of a rigid arm
+   is as small as rounding, `floor`, no transmission is tried. */
 static void choose_model(ethd__shooting *quick, ethd__shooting *p, const ethd_plant *plant, double floor,
                          ethd__fit *f) {
   contest stiff = {.problem = quick, .best = *plant, .least = (double)INFINITY};

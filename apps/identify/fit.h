@@ -9,20 +9,23 @@
 
 /* Fills rigid plants from which a fit may start, the likeliest first, and returns how many there are. They come from a
    regression of accelerations over spans of ticks on the commands, for a grid of delays and torque limits. `plant` has
-   the numbers that a fit leaves alone. */
+   the numbers that aren't fitted. */
 int ethd__fit_starts(const ethd__evidence *evidence, const ethd_plant *plant, ethd_plant out[ETHD__STARTS]);
 
 /* Returns the largest commanded force at the ring, N. */
 double ethd__fit_force(const ethd__evidence *evidence);
 
-/* Minimises the squares from shooting->plant on, which becomes the best plant; returns the sum of squares, rad^2. About `most` evaluations at most; `what`: the word shown as progress. */
+/* Minimises the squares from shooting->plant on, which becomes the best plant; returns the sum of squares, rad^2. About
+   `most` evaluations at most; `what`: the word shown as progress. */
 double ethd__fit_squares(ethd__shooting *shooting, int most, const char *what);
 
-/* Fills the standard errors of the coordinates of shooting->chosen, valid for residuals that are correlated within a window (cluster sandwich); INFINITY for a coordinate without effect. `step`, unless it
-   is NULL, becomes the step that Gauss and Newton would take from here. */
+/* Fills the standard errors of the coordinates of shooting->chosen, valid for residuals that are correlated within a
+   window (cluster sandwich); INFINITY for a coordinate without effect. `step`, unless it is NULL, becomes the step that
+   Gauss and Newton would take from here. */
 void ethd__fit_errors(ethd__shooting *shooting, double errors[ETHD__UNKNOWNS], double step[ETHD__UNKNOWNS]);
 
-/* Returns whether one of several recordings has other masses than the first; fills its index and the relative difference. */
+/* Returns whether one of several recordings has other masses than the first; fills its index and the relative
+   difference. */
 bool ethd__fit_stranger(const ethd__shooting *shooting, uint32_t *recording, double *shift);
 
 typedef struct ethd__fit {

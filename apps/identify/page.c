@@ -26,7 +26,7 @@ void ethd__finding_plant(ethd__finding *f) {
   if (!isnan(f->sensing.noise.value)) f->plant.noise = f->sensing.noise.value;
 }
 
-/* ---- what is known of a row ---- */
+/* ---- information about a row ---- */
 
 static int unknown_of(const ethd__key_row *row) {
   for (int u = 0; u < ETHD__UNKNOWNS; u++)
@@ -67,7 +67,7 @@ static void tell(const ethd__finding *f, const ethd__key_row *row, char *out, si
     snprintf(out, room, "%s, not seen, kept as in %s", strchr(unit, '|') ? "" : unit, f->base);
 }
 
-/* ---- for people ---- */
+/* ---- the page ---- */
 
 static void print_row(FILE *out, const ethd__finding *f, const ethd__key_row *row) {
   char what[192];

@@ -15,11 +15,12 @@ typedef struct ethd__finding {
   ethd__sensing sensing;
   ethd__whiteness whiteness;
   double *residual; /* problem.rows, rad */
-  ethd_plant plant; /* with all numbers: fitted, read off the sensors, or kept */
-  const char *base; /* where the kept numbers come from */
+  ethd_plant plant; /* with all numbers: fitted, found from the sensors' data, or kept */
+  const char *base; /* the source of the kept numbers */
 } ethd__finding;
 
-/* Puts the fitted numbers and those of the sensors into finding->plant, which holds the kept numbers. An impossible number, such as a friction below 0, becomes the nearest possible one. */
+/* Puts the fitted numbers and those of the sensors into finding->plant, which holds the kept numbers. An impossible
+   number, such as a friction below 0, becomes the nearest possible one. */
 void ethd__finding_plant(ethd__finding *finding);
 
 void ethd__page_print(FILE *out, const ethd__finding *finding);

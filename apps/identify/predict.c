@@ -7,7 +7,7 @@
 
 #define FAR 1e9        /* m: pad and ring never meet */
 #define FAST 1e4       /* rad/s, and */
-#define STEPS_MOST 300 /* steps a tick: a trial of the fit that is faster, or needs more of them, is given up */
+#define STEPS_MOST 300 /* steps a tick: a trial of the fit that is faster, or needs more steps, is abandoned */
 
 void ethd__predictor_prepare(const ethd__evidence *evidence, const ethd_plant *plant, double tolerance,
                              ethd__predictor *out) {
@@ -61,8 +61,8 @@ static double lateness(const ethd__predictor *p, int64_t *ticks) {
 
 /* ---- one ---- */
 
-/* Steps from one change of torque to the next, and reads the tick in between off the steps. `at` is the tick's time;
-   INFINITY: there is none. False: the arm runs away, as no device does. */
+/* Steps from one change of torque to the next, and interpolates the tick in between. `at` is the tick's time; INFINITY:
+   there is none. False: the arm diverges. */
 static bool go_on(ethd__predictor *p, const ethd__piece *still, double until, double at, ethd__leg *leg, double *out) {
   double angles[ETHD__DOF_MAX];
   for (int steps = 0; leg->end < until; steps++) {
@@ -105,7 +105,8 @@ void ethd__predict(ethd__predictor *p, const ethd__shot *w, const double *x, dou
 
 /* ---- several ---- */
 
-/* Several arms in one window. Each counts time from its own changes of torque, so that their steps have similar lengths in spite of different delays. */
+/* Several arms in one window. Each counts time from its own changes of torque, so that their steps have similar lengths
+   for different delays. */
 typedef struct flock {
   const ethd__forecast *forecasts;
   const ethd__shot *window;
@@ -147,8 +148,8 @@ static void read_off(const flock *f, const double *begun, int k, bool due[ETHD__
   }
 }
 
-/* Steps all arms through the time `whole` under one torque, with tick k at `at`; k 0: no tick. False: an arm runs away,
-   as no device does. */
+/* Steps all arms through the time `whole` under one torque, with tick k at `at`; k 0: no tick. False: an arm
+   diverges. */
 static bool go_on_all(flock *f, const double *whole, const double *at, int k) {
   double left[ETHD__ARMS], begun[ETHD__ARMS];
   bool due[ETHD__ARMS] = {k, k, k, k};
@@ -157,7 +158,7 @@ static bool go_on_all(flock *f, const double *whole, const double *at, int k) {
   for (int steps = 0; steps < STEPS_MOST && !runs_away(f); steps++) {
     bool over = ethd__arms_advance(&f->arms, left, &f->step);
     if (over)
-      memcpy(f->step.length, whole, sizeof left); /* so that a due tick lies in the last step, in spite of rounding */
+      memcpy(f->step.length, whole, sizeof left); /* so that a due tick lies in the last step even with rounding */
     read_off(f, begun, k, due);
     if (over) return true;
     for (int i = 0; i < ETHD__ARMS; i++) {

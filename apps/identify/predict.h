@@ -6,7 +6,8 @@
 #include "identify/evidence.h"
 #include "sim/arms.h"
 
-/* The state at a window's beginning: angles and speeds that the encoders see, rad and rad/s of both joints; with an elastic transmission also the links' lead over them. */
+/* The state at a window's beginning: angles and speeds that the encoders see, rad and rad/s of both joints; with an
+   elastic transmission also the links' lead over them. */
 enum { ETHD__STATE_RIGID = 4, ETHD__STATE_MOST = 8 };
 
 #define ETHD__WINDOW_MOST 512 /* ticks */
@@ -28,7 +29,8 @@ typedef struct ethd__predictor {
 void ethd__predictor_prepare(const ethd__evidence *evidence, const ethd_plant *plant, double tolerance,
                              ethd__predictor *out);
 
-/* Fills the joint angles at the window's ticks, both of one tick side by side: 2 * window->count numbers. An arm that diverges stands still from there on. */
+/* Fills the joint angles at the window's ticks, both of one tick side by side: 2 * window->count numbers. An arm that
+   diverges stands still from there on. */
 void ethd__predict(ethd__predictor *predictor, const ethd__shot *window, const double *state, double *out);
 
 /* One of several parallel predictions of a window. */

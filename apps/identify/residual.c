@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#define LOUD 1.25     /* times what rounding leaves: a larger residual isn't explained */
+#define LOUD 1.25     /* times the residual of rounding: a larger residual isn't explained */
 #define COLOURED 0.15 /* a correlation so far beyond the bound isn't made by rounding in slow stretches */
 
 /* Returns whether the joint passes a count or more in a tick, where rounding is white. */
@@ -20,7 +20,8 @@ static double products(const double *a, int count, int joint, int lag) {
   return sum;
 }
 
-/* Returns the share of a white residual's sum of products at this lag that the fitted states remove; it isn't colour. */
+/* Returns the share of a white residual's sum of products at this lag that the fitted states remove; it isn't
+   colour. */
 static double taken(const ethd__shooting *p, const ethd__fit_window *w, int joint, int lag) {
   double sum = 0;
   int n = 2 * w->window.count;

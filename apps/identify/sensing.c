@@ -164,7 +164,9 @@ static void find_noise(const ethd__evidence *e, double pace, double *room, ethd_
   for (int order = 1; order <= ORDERS; order++) {
     size_t n = differences(e, pace, order, room);
     double sd = median(room, n) / 0.674489750196082, error = sd * 1.17 * sqrt(order / fmax((double)n, 1));
-    if (n < 50 || out->value < sd + 2 * error) continue; /* an order counts if it gives clearly less than lower ones */
+    if (n < 50 || out->value < sd + 2 * error)
+      continue; /* an order counts if it gives clearly less noise than lower
+                                                            ones */
     *out = (ethd__bracket){sd, sd - 1.96 * error, sd + 1.96 * error};
   }
 }

@@ -132,7 +132,8 @@ typedef struct job {
   double *out;
 } job;
 
-/* Moves the state by the projection of the residual on its basis, or by a part of it if the whole doesn't reduce the squares. Returns the remaining sum of squares. */
+/* Moves the state by the projection of the residual on its basis, or by a part of it if the whole doesn't reduce the
+   squares. Returns the remaining sum of squares. */
 static double improve(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant, double *state,
                       double *left) {
   double moved[ETHD__STATES] = {0}, next[ETHD__STATES], now[ETHD__RESIDUALS_MOST], sum = dot(left, left, w->rows);

@@ -1,5 +1,6 @@
 /* The least-squares problem (multiple shooting): its residuals are measured minus predicted encoders over many short
-   windows, each with its own initial state. The states are fitted for every plant (variable projection), so that only the plant's unknowns remain. All [main]. */
+   windows, each with its own initial state. The states are fitted for every plant (variable projection), so that only
+   the plant's unknowns remain. All [main]. */
 #ifndef ETHD__APPS_IDENTIFY_SHOOTING_H
 #define ETHD__APPS_IDENTIFY_SHOOTING_H
 
@@ -44,7 +45,7 @@ typedef struct ethd__shooting {
 /* Cuts the passages into at most `most` windows. tolerance, m/s: the simulator's. */
 void ethd__shooting_open(const ethd__evidence *evidence, size_t most, double tolerance, ethd__shooting *out);
 
-/* Opens a problem of the windows of one recording alone, whose states stand where those of `shooting` do. */
+/* Opens a problem with the windows of one recording only, starting from the states of `shooting`. */
 void ethd__shooting_part(const ethd__shooting *shooting, uint32_t recording, ethd__shooting *out);
 
 void ethd__shooting_close(ethd__shooting *shooting);
@@ -61,12 +62,12 @@ void ethd__shooting_slopes(ethd__shooting *shooting, const double *coordinates, 
 /* Returns the simulated time of all predictions so far, s. */
 double ethd__shooting_simulated(const ethd__shooting *shooting);
 
-/* Returns the number of states of all windows, which the degrees of freedom lack. */
+/* Returns the number of states of all windows, by which the degrees of freedom decrease. */
 size_t ethd__shooting_states(const ethd__shooting *shooting);
 
 /* ---- the arm's predictions in a window [in arm_alone.c] ---- */
 
-/* Returns the size of this plant's state, and the step of a number for its slope by differences. */
+/* Return the size of this plant's state, and the step of a state for its slope by differences. */
 int ethd__arm_states(const ethd_plant *plant);
 double ethd__arm_step(int state);
 

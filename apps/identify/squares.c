@@ -15,8 +15,7 @@ typedef struct descent {
   uint64_t calls, most;
 } descent;
 
-/* Returns whether a plant with these coordinates is possible; if not, the residuals are so large that the method steps
-   back. */
+/* Returns whether a plant with these coordinates is possible; if not, large residuals make the method step back. */
 static bool is_possible(const ethd__shooting *p, const double *coordinates) {
   ethd_plant plant = p->plant;
   ethd__chosen_set(&p->chosen, coordinates, &plant);

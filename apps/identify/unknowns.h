@@ -1,5 +1,5 @@
-/* The arm's parameters in a plant, which a fit may change. Each has a coordinate that is scaled so that equal steps have equal
-   effect. All [main]. */
+/* The arm's parameters in a plant, which a fit may change. Each has a coordinate that is scaled so that equal steps
+   have equal effect. All [main]. */
 #ifndef ETHD__APPS_IDENTIFY_UNKNOWNS_H
 #define ETHD__APPS_IDENTIFY_UNKNOWNS_H
 

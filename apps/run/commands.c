@@ -80,8 +80,8 @@ static bool faulty(ethd__session *s) { return ethd__recorder_fault(&s->recorder)
 
 static const char *latched(ethd__session *s) { return ethd_fault_sentence(ethd__recorder_fault(&s->recorder)); }
 
-/* The device is asked at once to leave a fault of its own. The controller's fault goes when nothing has gone wrong for
-   long enough; where the device had a fault, that is at the second ack. */
+/* The device is asked at once to clear its own fault. The controller's fault can be cleared only after a time without
+   faults; if the device had a fault, this needs a second ack. */
 static void ack(ethd__session *s, ethd__commands *c, char *rest) {
   (void)c, (void)rest;
   ethd_device_clear(s->device);
@@ -117,7 +117,7 @@ static void enable(ethd__session *s, ethd__commands *c, char *rest) {
   }
 }
 
-/* "home" finds the joints by moving, as the device's settings say. "home Q1 Q2" says that the arm stands in its jig, at
+/* "home" finds the joints' angles by moving, as the device's settings say. With "home Q1 Q2" the arm is in its jig, at
    these angles. */
 static void home(ethd__session *s, ethd__commands *c, char *rest) {
   double q[2];
@@ -182,7 +182,7 @@ static void run(ethd__commands *c, ethd__session *s) {
   for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
     if (strlen(table[i].word) != length || memcmp(table[i].word, word, length) != 0) continue;
     if (table[i].alone && *rest)
-      answer("error: %s stands alone", table[i].word);
+      answer("error: %s has no argument", table[i].word);
     else
       table[i].run(s, c, rest);
     return;

@@ -1,4 +1,4 @@
-/* Commands of ethd-run: each line of input is answered by one line. All [main]. */
+/* Commands of ethd-run: each line of input gets one line as its answer. All [main]. */
 #ifndef ETHD__APPS_RUN_COMMANDS_H
 #define ETHD__APPS_RUN_COMMANDS_H
 
@@ -14,7 +14,7 @@ typedef struct ethd__commands {
   double hold;          /* s on the loop's clock; the next command waits until then */
 } ethd__commands;
 
-/* Reads what is there, at most one line, and answers it. `wait_ms` is as for poll(2). */
+/* Reads the available input, at most one line, and answers it. `wait_ms` is as for poll(2). */
 void ethd__commands_read(ethd__commands *c, ethd__session *s, int wait_ms);
 
 #endif

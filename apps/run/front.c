@@ -80,7 +80,7 @@ static void merge_space(const ethd_device *device, ethd__setup_copy *out) {
   setup->finger_lost = fmin(setup->finger_lost, limits.finger_lost);
 }
 
-/* The controller itself skips surfaces that are too far away to matter. */
+/* The controller itself skips surfaces that are too far away. */
 static uint32_t near_solids(void *solids, const ethd_space_sense *sense, ethd_surface *out) ETHD_RT {
   const size_t count =
       ethd_solids_surfaces(solids, NULL, ethd_vec3_of(sense->x), (double)INFINITY, out, ETHD_SURFACES_MAX);

@@ -1,4 +1,4 @@
-/* What differs between a session in the plane and one in space. All [main]. */
+/* The differences between a session in the plane and one in space. All [main]. */
 #ifndef ETHD__APPS_RUN_FRONT_H
 #define ETHD__APPS_RUN_FRONT_H
 
@@ -14,7 +14,7 @@ typedef union ethd__row {
   ethd_space_row space;
 } ethd__row;
 
-/* What both rows say. */
+/* The common fields of both rows. */
 typedef struct ethd__row_head {
   const void *trace;
   int64_t time_ns, fault;
@@ -27,16 +27,16 @@ typedef struct ethd__row_head {
 typedef struct ethd__session_front {
   const ethd__config_front *config;
   const char *limits;    /* section of the limits, with the keys speed and clean_time */
-  const char *merged[2]; /* sections in which merge may change something; NULL: none */
-  const char *unseen;    /* the remark on a finger of which no reading comes */
-  /* Puts what the device knows of its limits and dynamics into a copy of the configuration's setup. */
+  const char *merged[2]; /* sections that merge may change; NULL: none */
+  const char *unseen;    /* the remark on a finger without readings */
+  /* Puts the device's limits and dynamics into a copy of the configuration's setup. */
   void (*merge)(const ethd_device *device, ethd__setup_copy *setup);
   /* Gives a loop its controller and the numbers that follow from the setup; `config` owns the scene. */
   void (*enter)(const ethd_config *config, const ethd__setup_copy *setup, void *control, ethd_loop_def *loop);
   ethd_status (*take)(ethd_loop *loop, ethd__row *out);
   ethd__row_head (*head)(const ethd__row *row);
   void (*laws)(const ethd__setup_copy *setup, const ethd_law *out[ETHD_TRANSITION + 1]);
-  /* Writes state, place and command of a row for people. */
+  /* Writes state, position and command of a row as text for the user. */
   void (*say)(const ethd__setup_copy *setup, const ethd__row *row, char *text, size_t size);
 } ethd__session_front;
 

@@ -56,15 +56,15 @@ static bool tell_fault(ethd__recorder *r, int64_t fault) {
   return true;
 }
 
-/* Reports once to the loop and to the user what the recorder loses. */
+/* Reports the recorder's losses once to the loop and to the user. */
 static void tell_loop(ethd__recorder *r, uint64_t lost, bool failed_before) {
   if (r->failed && !failed_before)
     fprintf(stderr, "%s: %s\n", program_invocation_short_name, ethd_recording_failure(r->recording));
   if (lost || r->failed != failed_before) ethd_loop_raise(r->loop, ETHD_FAULT_RECORDER);
 }
 
-/* Updates what the recorder shares with the main thread: the newest row, and the posts that wait. Hands those that rule
-   from this row on to `taken` and returns their number. */
+/* Updates the data shared with the main thread: the newest row, and the waiting posts. Copies the posts in force from
+   this row on to `taken` and returns their number. */
 static int share(ethd__recorder *r, const ethd__row *row, const ethd__row_head *head,
                  ethd__post taken[ETHD__POSTS_MAX]) {
   int count = 0;
@@ -84,7 +84,7 @@ static void tell_date(ethd__recorder *r, int64_t instant) {
   if (r->recording && ethd__clock_event(r->recording, instant)) r->failed = true;
 }
 
-/* Writes a row and what happened before it, in the order of a recording. Returns true if a fault that stops the ring
+/* Writes a row and the events before it, in the order of a recording. Returns true if a fault that stops the ring
    begins. */
 static bool record(ethd__recorder *r, const ethd__row_head *row, const ethd__post *posts, int count) {
   tell_lost(r, row->lost);

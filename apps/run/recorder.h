@@ -1,5 +1,5 @@
-/* Takes the loop's rows into a recording and to telemetry, and keeps the newest row for other threads. It runs in a thread
-   of its own or, on a virtual clock, after every tick. */
+/* Writes the loop's rows to a recording and to telemetry, and keeps the newest row for other threads. It runs in its
+   own thread or, on a virtual clock, after every tick. */
 #ifndef ETHD__APPS_RUN_RECORDER_H
 #define ETHD__APPS_RUN_RECORDER_H
 
@@ -14,13 +14,13 @@
 #define ETHD__POSTS_MAX 4
 #define ETHD__DETAIL_MAX 256
 
-/* A setup that was posted, in the words of events.csv. */
+/* A posted setup, in the form of events.csv. */
 typedef struct ethd__post {
   const char *kind;
   char detail[ETHD__DETAIL_MAX];
 } ethd__post;
 
-/* Another taker of every row, called on the recorder's thread. */
+/* Another receiver of every row, called on the recorder's thread. */
 typedef struct ethd__sink {
   void *self;
   void (*take)(void *self, const ethd__row *row); /* NULL: none */
@@ -34,7 +34,7 @@ typedef struct ethd__recorder {
   ethd_recording *recording; /* NULL: none */
   int telemetry;             /* socket, -1 none */
   uint64_t every;            /* rows from one datagram to the next */
-  uint64_t keeps;            /* rows from one that is recorded to the next; 1: each */
+  uint64_t keeps;            /* rows from one recorded row to the next; 1: each */
   pthread_t thread;
   atomic_int stop, stopping; /* stopping: a controlled stop has begun; its own fault is not reported */
   bool threaded;
@@ -43,13 +43,13 @@ typedef struct ethd__recorder {
 
   ethd__snapshot snapshot;
 
-  pthread_mutex_t lock; /* for what the main thread shares with the recorder's; no file is written under it */
+  pthread_mutex_t lock; /* for data shared by the main and the recorder's thread; no file is written under it */
   ethd__post posts[ETHD__POSTS_MAX];
   int waiting;               /* posts */
   uint64_t swaps, clearings; /* clearings: rows so far whose step cleared faults */
   ethd__row latest;
 
-  /* the recorder's thread alone uses these until it has ended */
+  /* only the recorder's thread uses these until it has ended */
   uint64_t rows, lost;
   uint64_t written; /* rows that the recording should have */
   int64_t fault;    /* of the last row */
@@ -62,17 +62,17 @@ typedef struct ethd__recorder {
 void ethd__recorder_begin(ethd__recorder *recorder, double period);
 ETHD_MUST_CHECK ethd_status ethd__recorder_start(ethd__recorder *recorder);
 
-/* Takes all rows that are there. Must not be called while the thread runs. */
+/* Processes all waiting rows. Must not be called while the thread runs. */
 void ethd__recorder_drain(ethd__recorder *recorder);
 
-/* Ends the thread and takes the rest. */
+/* Ends the thread and processes the rest. */
 void ethd__recorder_end(ethd__recorder *recorder);
 
-/* Says in the recording that only every keeps-th row will be in it. */
+/* Records that the recording has only every keeps-th row. */
 ETHD_MUST_CHECK ethd_status ethd__recorder_thinned(ethd__recorder *recorder);
 
-/* Notes a setup before it is posted; the note is taken back when the post is refused. Returns false if the detail is
-   too long. */
+/* Notes a setup before it is posted; ethd__recorder_withdraw removes the note if the post is refused. Returns false if
+   the detail is too long. */
 bool ethd__recorder_expect(ethd__recorder *recorder, const char *kind, const char *detail);
 void ethd__recorder_withdraw(ethd__recorder *recorder);
 

@@ -5,8 +5,8 @@
 #include "ethd/config.h"
 #include "ethd/loop.h"
 
-/* Says in message what ethd_loop_create (`loop` is then NULL) or ethd_loop_start, which failed with `status`, left in
-   `error`; returns the status. */
+/* Explains in message why ethd_loop_create (`loop` is then NULL) or ethd_loop_start failed with `status` and `error`;
+   returns the status. */
 ethd_status ethd__start_refused(const ethd_loop *loop, ethd_status status, const ethd_error *error,
                                 char message[ETHD_MESSAGE_MAX]);
 

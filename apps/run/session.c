@@ -12,12 +12,12 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define PATIENCE 1000    /* waits of 1 ms, or ticks, after which nothing more is expected */
+#define PATIENCE 1000    /* waits of 1 ms, or ticks, until it gives up */
 #define FIRST_FINGER 100 /* such waits for the finger's first reading */
 
 /* ---- time ---- */
 
-/* Names the law that failed and says what it did. */
+/* Prints the failed law and its failure. */
 static void tell_law(const ethd__session *s, const ethd_event *event) {
   char text[ETHD_MESSAGE_MAX];
   const ethd_law *laws[ETHD_TRANSITION + 1];

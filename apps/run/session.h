@@ -10,14 +10,14 @@ typedef struct ethd__session {
   ethd_config *config;
   ethd_device *device;
   const ethd__session_front *front;
-  const ethd__controller *controller; /* of that front, and */
-  void *control;                      /* one of them */
-  ethd__setup_copy setup;             /* the one that was posted last */
+  const ethd__controller *controller; /* of that front */
+  void *control;                      /* such a controller */
+  ethd__setup_copy setup;             /* the last posted one */
   double period;                      /* s */
   ethd_loop *loop;
   ethd__recorder recorder;
   bool is_virtual, posted, started;
-  bool left;     /* the loop's thread hangs, so nothing that it may touch is freed */
+  bool left;     /* the loop's thread hangs, so no memory that it may use is freed */
   bool lost;     /* it hangs in the device */
   int64_t clock; /* of a virtual session, ns */
 } ethd__session;
@@ -35,15 +35,15 @@ typedef struct ethd__session_options {
   ethd_loop_def loop; /* the session fills in its device, controller, period and clock */
 } ethd__session_options;
 
-/* Opens and starts the device; the loop runs, or on a virtual clock has made its first tick. On failure
-   all is closed. */
+/* Opens and starts the device; then the loop runs, or on a virtual clock has made its first tick. A failure closes
+   all. */
 ETHD_MUST_CHECK ethd_status ethd__session_open(const ethd__session_options *options, ethd__session *s,
                                                char message[ETHD_MESSAGE_MAX]);
 
 /* Returns whether a reading of the finger has come; waits a moment for the first one of a live session. */
 bool ethd__session_sees_finger(ethd__session *s);
 
-/* Damps the ring until it is still, then disables the device. `told`: a signal requested it. */
+/* Brakes the ring until it stands still, then disables the device. `told`: a signal requested it. */
 void ethd__session_halt(ethd__session *s, bool told);
 
 /* Returns false if the loop's thread has ended or hangs. */
@@ -54,15 +54,16 @@ bool ethd__session_lives(const ethd__session *s);
 ETHD_MUST_CHECK ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]);
 void ethd__session_free(ethd__session *s);
 
-/* Posts a changed setup; kind and detail as in events.csv. On a live session it rules when this returns. */
+/* Posts a changed setup; kind and detail as in events.csv. On a live session it is in force when this returns. */
 ETHD_MUST_CHECK ethd_status ethd__session_post(ethd__session *s, const ethd__setup_copy *setup, const char *kind,
                                                const char *detail, char message[ETHD_MESSAGE_MAX]);
 
-/* Returns for how long nothing has called for a stop since a fault was latched, s, and in *needed for how long an
-   acknowledgement requires it. */
+/* Returns for how long no row has called for a stop since a fault was latched, s, and in *needed the time that an
+   acknowledgement requires. */
 double ethd__session_clean_time(const ethd__session *s, double *needed);
 
-/* Acknowledges a latched fault and waits for the step that clears it, so that the next query sees the result. Returns false if a fault is latched after that step: the old one, or another. */
+/* Acknowledges a latched fault and waits for the step that clears it, so that the next query sees the result. Returns
+   false if a fault is latched after that step: the old one, or another. */
 bool ethd__session_acknowledge(ethd__session *s);
 
 /* Starts the device again and resets the controller; the torque rises from zero. */

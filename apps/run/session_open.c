@@ -36,7 +36,7 @@ static ethd_status open_device(ethd__session *s, const char *folder, char *messa
   return status;
 }
 
-/* Nothing may hold up the thread that writes the snapshot, as a pipe's reader could. */
+/* The thread that writes the snapshot must not block, as on a pipe. */
 static bool is_other_than_file(const char *path) {
   struct stat info;
   return stat(path, &info) == 0 && !S_ISREG(info.st_mode);

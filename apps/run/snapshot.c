@@ -46,7 +46,7 @@ static ethd_status write_rows(ethd__snapshot *s, FILE *file, size_t n) {
   return status ? status : closed;
 }
 
-/* An earlier file stays in its place until this one is whole. */
+/* An earlier file stays until this one is complete. */
 static ethd_status replace_file(ethd__snapshot *s, size_t n) {
   ethd_replace replace;
   ethd_status status = ethd_replace_begin(s->path, &replace, s->message);

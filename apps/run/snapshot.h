@@ -8,8 +8,8 @@
 
 typedef struct ethd__snapshot {
   char *path;                 /* NULL: none is taken */
-  const ethd_column *columns; /* of a row, */
-  size_t bytes;               /* which has so many */
+  const ethd_column *columns; /* of a row */
+  size_t bytes;               /* of a row */
   char *rows;
   size_t room, count;             /* rows; taken since the start */
   size_t after;                   /* rows that follow the fault */
@@ -19,14 +19,14 @@ typedef struct ethd__snapshot {
   char message[ETHD_MESSAGE_MAX]; /* why it couldn't be written, else empty */
 } ethd__snapshot;
 
-/* Fails with ETHD_E_MEMORY. Without it nothing is taken. */
+/* Fails with ETHD_E_MEMORY. Without it no snapshot is taken. */
 ETHD_MUST_CHECK ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double period,
                                                 const ethd_column *columns, size_t row_bytes);
 
-/* To be called with every row, in order. `begins`: a fault that stops the ring and begins at this row. */
+/* To be called with every row, in order. `begins`: a fault that begins at this row and stops the ring. */
 void ethd__snapshot_take(ethd__snapshot *s, const void *row, ethd_fault begins);
 
-/* Writes the rows that are there, if the run ended before all had come. */
+/* Writes the rows so far, if the run ends before all have come. */
 void ethd__snapshot_finish(ethd__snapshot *s);
 void ethd__snapshot_close(ethd__snapshot *s);
 

@@ -53,7 +53,7 @@ static void print_fault(FILE *out, int fault, uint64_t n, int *none) {
   *none = 0;
 }
 
-/* Faults that stopped the ring come first. The stop at the end works by a speed limit of 0; its fault isn't counted. */
+/* Faults that stopped the ring come first. The stop at the end uses a speed limit of 0; its fault isn't counted. */
 static void print_faults(FILE *out, const ethd__recorder *r, const ethd_loop_stats *stats) {
   int none = 1;
   for (int i = 0; i < ETHD_FAULT_COUNT; i++) print_fault(out, i, r->faults[i], &none);
@@ -62,7 +62,7 @@ static void print_faults(FILE *out, const ethd__recorder *r, const ethd_loop_sta
   if (none) fprintf(out, "%-10s none\n", "faults");
 }
 
-/* The counters are the controller's and begin when it is enabled. */
+/* The counters are the controller's; they begin at zero when the device is enabled. */
 static void print_skipped(FILE *out, const ethd__session *s, const ethd_loop_stats *stats) {
   ethd_counters c;
   s->controller->counters(s->control, &c);

@@ -1,4 +1,4 @@
-/* What people are told of a run. All [main]. */
+/* Prints a run's results for the user. All [main]. */
 #ifndef ETHD__APPS_RUN_SUMMARY_H
 #define ETHD__APPS_RUN_SUMMARY_H
 
@@ -9,10 +9,10 @@
 /* Prints the run's figures; to be called after the session's end. */
 void ethd__summary_print(FILE *out, const ethd__session *s, const char *record);
 
-/* Prints a sentence and a mend for each thing that the machine refused. */
+/* Prints a sentence and a remedy for each refusal by the machine. */
 void ethd__shortfalls_print(FILE *out, int32_t bits);
 
-/* Prints what people should know before anything moves: the device's remarks and what the machine refused. */
+/* Prints, before any motion, the device's remarks and the machine's refusals. */
 void ethd__remarks_print(FILE *out, ethd__session *s);
 
 /* Prints one line of a histogram: p50, p99, p99.9 and max, us. */

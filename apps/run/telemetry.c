@@ -37,7 +37,7 @@ static bool is_port(const char *digits) {
   return strlen(digits) <= 5 && strtoul(digits, NULL, 10) >= 1 && strtoul(digits, NULL, 10) <= 65535;
 }
 
-/* Only the kernel's refusal tells that an address is a network's broadcast address. */
+/* Only the kernel's refusal identifies a network's broadcast address. */
 static bool is_group(const struct addrinfo *a) {
   const struct sockaddr_in *four = (const void *)a->ai_addr;
   const struct sockaddr_in6 *six = (const void *)a->ai_addr;
@@ -46,7 +46,7 @@ static bool is_group(const struct addrinfo *a) {
   return IN_MULTICAST(address) || address == INADDR_BROADCAST;
 }
 
-/* Returns -1 with errno set if there is no way to the address. */
+/* Returns -1 with errno set if there is no route to the address. */
 static int connected(const struct addrinfo *a, bool group) {
   int s = socket(a->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0), on = group;
   if (s < 0) return -1;
@@ -125,7 +125,7 @@ static void put_column(telemetry_text *t, const ethd_column *column, const void 
   if (column->count > 1) put(t, "]");
 }
 
-/* Those of them that the front has. */
+/* Sent if the front has them. */
 static const char *const sent[] = {"tick", "state",   "fault", "contacts", "missed", "q",   "x",    "v",    "xf", "vf",
                                    "tau",  "command", "fe",    "fd",       "beta",   "eps", "d_re", "d_fe", "v_n"};
 

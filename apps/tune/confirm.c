@@ -25,7 +25,8 @@ static double left_over(const line_fit *l) {
   return sqrt(fmax(0, l->vv / l->n - v * v - slope * slope * tt));
 }
 
-/* Continues the last tap. With an elastic transmission the motor's side oscillates first, and most. INFINITY: the controller stopped. */
+/* Continues the last tap. With an elastic transmission the motor's side oscillates first, and most. INFINITY: the
+   controller stopped. */
 static double swing_of(ethd__stage *stage) {
   line_fit line = {0};
   ethd_sense sense;
@@ -71,7 +72,8 @@ static ethd_status measure(const ethd__tune_rig *rig, const ethd__tune_point *po
   return status;
 }
 
-/* The device itself may move: twice its speed under the configuration's own gains is allowed, if those keep the margins. */
+/* The device itself may move: twice its speed under the configuration's own gains is allowed, if those keep the
+   margins. */
 static bool rests(const unrest *u, const unrest *own, double *worst) {
   bool good = true;
   *worst = 0;

@@ -74,7 +74,8 @@ typedef struct tally {
   mean early, lag, eps, delta_s, d_max, v_touch, rough;
 } tally;
 
-/* Takes the squares of the lag before the wall, and of the torque's changes there and at the end, when the ring rests. */
+/* Takes the squares of the lag before the wall, and of the torque's changes there and at the end, when the ring
+   rests. */
 static void take_squares(const ethd__tap_rows *rows, double wall, tally *t) {
   double last = rows->truth[rows->count - 1].t;
   for (size_t i = 1; i < rows->count; i++) {

@@ -7,8 +7,9 @@
 
 #define ETHD_TUNE_SPEEDS 2 /* low and high */
 
-/* Every figure is better when it is smaller, and there is one for each speed. X(name, unit, description). They are means
-   over the taps whose hand path crosses the wall at about that speed; eps, delta_s, d_max and v_touch over those with a touch that isn't early. */
+/* Every figure is better when it is smaller, and there is one for each speed. X(name, unit, description). They are
+   means over the taps whose hand path crosses the wall at about that speed; eps, delta_s, d_max and v_touch over those
+   with a touch that isn't early. */
 #define ETHD_TUNE_FIGURES(X)                                                              \
   X(early, "1", "share of the taps with a touch before the ring meets the wall")          \
   X(lag, "m", "distance of ring and finger centres, rms, over the 50 ms before the wall") \
@@ -44,12 +45,12 @@ typedef struct ethd__tune_rig {
   bool passive; /* the wall is to be passive with the device's own viscous friction (Colgate and Schenkel) */
 } ethd__tune_rig;
 
-/* Lowers the range of the damping gain of every loop that doesn't keep the margin under the configuration's own gains,
-   so that the search finds some that do. */
+/* Lowers the range of the damping gain of every loop that doesn't keep the margin with the configuration's own gains,
+   so that the search finds gains that do. */
 void ethd__score_widen(const ethd__tune_rig *rig, ethd__tune_space *space);
 
-/* Returns whether every loop, along each axis, keeps the margin, free and with each hand's mass against the ring. It is
-   false, too, for a setup that the configuration refuses. */
+/* Returns whether every loop, along each axis, keeps the margin, free and with each hand's mass against the ring. It
+   returns false also for a setup that the configuration refuses. */
 bool ethd__score_keeps(const ethd__tune_rig *rig, const ethd__tune_point *point);
 
 /* Runs taps 0 to taps - 1 at each speed. */

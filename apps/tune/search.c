@@ -14,11 +14,11 @@ static const struct {
   double spread;
 } plan[ETHD_TUNE_ROUNDS] = {{20, 0, 0, 0}, {10, 12, 3, 0.12}, {4, 8, 2, 0.05}, {1, 6, 0, 0}};
 
-#define WORSE 1.1 /* times the configuration's figure: what is worse than that counts more, by the next factor */
+#define WORSE 1.1 /* times the configuration's figure: a worse figure counts more, by the next factor */
 #define DEARER 10.0
-#define TAPS_LEAST 8      /* with fewer hardly a hand meets the wall at the speed asked for */
-#define LEAST 4           /* points that go on however small the search is */
-#define THIN 4            /* one in this number of points outside the margin is tapped too, for the comparison */
+#define TAPS_LEAST 8      /* with fewer hardly a hand meets the wall at the requested speed */
+#define LEAST 4           /* points kept in the smallest search */
+#define THIN 4            /* one in THIN points outside the margin is tapped too, for comparison */
 #define DRAWS_A_POINT 128 /* points that are drawn at most for one that keeps the margin */
 
 /* ---- a round's points ---- */

@@ -39,7 +39,7 @@ typedef struct ethd__tune_search {
   double weights[ETHD_TUNE_GOALS];
   ethd__tune_round rounds[ETHD_TUNE_ROUNDS];
   uint64_t drawn, kept;       /* points that were drawn for round 1, and those of them that kept the margin */
-  uint32_t asked;             /* points whose margins were tried in time */
+  uint32_t asked;             /* points whose margins were simulated in time */
   ethd__tune_verdict verdict; /* the verdict on the last of them */
 } ethd__tune_search;
 

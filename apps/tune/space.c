@@ -33,7 +33,7 @@ static double rounded(double value) {
 
 /* ---- making it ---- */
 
-/* A margin that can't be worked out would be kept by every point. */
+/* Every point would keep a margin that can't be computed. */
 static ethd_status refuse_unjudged(const ethd_setup *setup, char *message) {
   for (int kind = 0; kind < ETHD_LOOP_KINDS; kind++) {
     const ethd_law *law = ethd__bounds_unjudged(setup, (ethd__bounds_kind)kind);

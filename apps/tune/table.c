@@ -59,7 +59,7 @@ int ethd__tune_print_margins(const ethd__tune_rig *rig, const ethd__tune_point *
   return ethd__space_setup(rig->space, point, &setup, unsaid) ? 0 : ethd__report_stability(&setup, &device);
 }
 
-/* ---- what each gain buys ---- */
+/* ---- effect of each gain ---- */
 
 ethd_status ethd__tune_weigh(const ethd__tune_search *s, const ethd__tune_entry *choice, ethd__tune_worths *out,
                              char message[ETHD_MESSAGE_MAX]) {

@@ -12,7 +12,8 @@ void ethd__tune_print(FILE *out, const ethd__tune_search *search, const ethd__tu
 /* Prints the point's margins without a hand, as ethd-check prints them; returns how many of its loops are unstable. */
 int ethd__tune_print_margins(const ethd__tune_rig *rig, const ethd__tune_point *point);
 
-/* Effect of each gain: every goal's figure with this gain alone at the configuration's value, over the choice's figure. Over 1 the chosen value is better, under 1 it is worse. */
+/* Effect of each gain: every goal's figure with this gain alone at the configuration's value, over the choice's figure.
+   Over 1 the chosen value is better, under 1 it is worse. */
 typedef struct ethd__tune_worths {
   double times[ETHD_TUNE_KEYS_MAX][ETHD_TUNE_GOALS];
 } ethd__tune_worths;

@@ -7,7 +7,7 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define CATCH_UP_MAX 1000 /* periods: after a longer gap simulated time falls behind */
+#define CATCH_UP_MAX 1000 /* periods: after a longer gap simulated time stays behind */
 
 enum { HAND, RATE, LATENCY, NOISE, BIAS, SEED, X, Y, Z, NX, NY, NZ, BEFORE, BEYOND, SPEED, BEGIN, PARAMS };
 
@@ -16,25 +16,25 @@ static const ethd_param params[PARAMS] = {
     [RATE] = {"hand_rate", "Hz", 1, 1000, 72, "rate of the headset's readings of it"},
     [LATENCY] = {"hand_latency", "s", 0, 1, 0.03, "time from a reading's instant to its arrival"},
     [NOISE] = {"hand_noise", "m", 0, 0.05, 1e-3, "sd of a reading, each axis"},
-    [BIAS] = {"hand_bias", "m", -0.1, 0.1, 0, "by which readings are off along the way of the reach"},
+    [BIAS] = {"hand_bias", "m", -0.1, 0.1, 0, "error of the readings along the direction of the reach"},
     [SEED] = {"hand_seed", ETHD_WHOLE, 0, 0x1p53, 1, "key of the noise"},
-    [X] = {"hand_x", "m", -100, 100, 0, "place that the finger's centre passes at the wall"},
-    [Y] = {"hand_y", "m", -100, 100, 0, "y of that place"},
-    [Z] = {"hand_z", "m", -100, 100, 0, "z of that place"},
+    [X] = {"hand_x", "m", -100, 100, 0, "position of the finger's centre at the wall"},
+    [Y] = {"hand_y", "m", -100, 100, 0, "y of that position"},
+    [Z] = {"hand_z", "m", -100, 100, 0, "z of that position"},
     [NX] = {"hand_nx", "1", -1, 1, 1, "direction of the reach, of any length above 0.001"},
     [NY] = {"hand_ny", "1", -1, 1, 0, "y of that direction"},
     [NZ] = {"hand_nz", "1", -1, 1, 0, "z of that direction"},
-    [BEFORE] = {"hand_before", "m", 0, 2, 0.2, "length of the reach before the place"},
+    [BEFORE] = {"hand_before", "m", 0, 2, 0.2, "length of the reach before that position"},
     [BEYOND] = {"hand_beyond", "m", 0, 2, 0.08, "length of the reach behind it"},
     [SPEED] = {"hand_speed", "m/s", 1e-3, 10, 0.5, "greatest speed of the reach"},
-    [BEGIN] = {"hand_begin", "s", 0, 1e3, 2.5, "time from the start to its begin"},
+    [BEGIN] = {"hand_begin", "s", 0, 1e3, 2.5, "time from the start to the beginning of the reach"},
 };
 
 static const char *const keys[] = {"table", NULL};
 
 typedef struct arm_device {
-  ethd__arm_sim sim;    /* first: tests look at where the arm really is */
-  _Atomic int32_t safe; /* any thread's */
+  ethd__arm_sim sim;    /* first: tests read the arm's true state */
+  _Atomic int32_t safe; /* any thread sets it */
   bool written;         /* `held` and `due_ns` are known */
   int64_t due_ns;       /* the tick at which the next read is expected */
   ethd_space_command held;
@@ -51,7 +51,7 @@ static ethd_status load(const ethd_device_def *def, const ethd_setting *setting,
   return status;
 }
 
-/* Refuses a controller that the arm doesn't suit. */
+/* Refuses a controller that doesn't fit the arm. */
 static ethd_status check(const ethd_device_def *def, const arm_device *d, char *message) {
   const char *file = def->file ? def->file : "setup";
   const double rate = d->sim.table.servo.rate;
@@ -115,7 +115,7 @@ static void pass(arm_device *d) {
 static ethd_status read_arm(void *device_, int64_t now_ns, ethd_space_sense *out) ETHD_RT {
   arm_device *d = device_;
   for (int i = 0; d->written && i < CATCH_UP_MAX && now_ns - d->due_ns >= period_ns(d); i++) {
-    pass(d); /* the periods that the loop missed, under the command that it left */
+    pass(d); /* the periods that the loop missed, under its last command */
     d->due_ns += period_ns(d);
   }
   const int64_t before = out->have;
@@ -162,10 +162,10 @@ static uint32_t figures(const void *device_, ethd_figure *out, uint32_t max) {
 
 static const char *remark(const void *device_, uint32_t i) {
   const char *safe_is = ((const arm_device *)device_)->sim.table.safe == ETHD__ARM_BRAKES
-                            ? "when it is safe, its brakes are closed: it stops at once and stays until the next start"
-                            : "when it is safe, it has stopped by its joints' accelerations and holds itself";
-  const char *const all[] = {
-      "simulated: joints follow by a second order, and a hand that meets the plate isn't stopped", safe_is};
+                            ? "its safe state is closed brakes: it stops at once and doesn't move until the next start"
+                            : "its safe state is zero speed: it stops within its joints' accelerations and holds";
+  const char *const all[] = {"simulated: joints follow with a second-order lag, and the plate doesn't stop a hand",
+                             safe_is};
   return i < 2 ? all[i] : NULL;
 }
 

@@ -25,7 +25,7 @@ void ethd__arm_finger_true(const ethd__arm_finger *f, double t, ethd_vec3 *x, et
 void ethd__arm_finger_read(ethd__arm_finger *f, int64_t time_ns, ethd_space_sense *out) {
   if (!(f->rate > 0)) return;
   const double now = 1e-9 * (double)time_ns;
-  const int64_t arrived = (int64_t)floor((now - f->latency) * f->rate + 1e-6) + 1; /* the first is taken at 0 */
+  const int64_t arrived = (int64_t)floor((now - f->latency) * f->rate + 1e-6) + 1; /* the first one at 0 */
   if (arrived <= f->given) return;
   f->given = arrived;
   const int64_t sample_ns = (int64_t)rint(1e9 * (double)(arrived - 1) / f->rate);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define EPSILON 0x1p-52
-#define NOTHING 1e-26 /* of the largest s^2: less is rounding */
+#define NOTHING 1e-26 /* of the largest s^2: smaller values are rounding errors */
 
 static double dot(const double *a, const double *b, uint32_t count) {
   double sum = 0;
@@ -21,7 +21,7 @@ static void turn(double *a, double *b, uint32_t count, double sine, double cosin
   }
 }
 
-/* Turns two rows until they are at right angles; returns whether they were. */
+/* Rotates two rows until they are orthogonal; returns whether they already were. */
 static bool part(ethd__inverse *o, uint32_t k, uint32_t l, double least) {
   const double a = dot(o->sv[k], o->sv[k], o->count), b = dot(o->sv[l], o->sv[l], o->count);
   const double both = dot(o->sv[k], o->sv[l], o->count);

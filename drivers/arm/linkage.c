@@ -4,7 +4,7 @@ static ethd_vec3 sum_of(double a, ethd_vec3 u, double b, ethd_vec3 v) {
   return ethd_vec3_add(ethd_vec3_scale(a, u), ethd_vec3_scale(b, v));
 }
 
-/* Turn a frame about its own z or x. */
+/* Rotate a frame about its own z or x. */
 static void turn_z(ethd__axes *f, double sine, double cosine) {
   const ethd_vec3 x = f->x;
   f->x = sum_of(cosine, x, sine, f->y);

@@ -1,7 +1,7 @@
-/* The geometry of an arm of two to seven revolute joints: where its tool is, and how that moves with each joint.
+/* The geometry of an arm of two to seven revolute joints: the tool's pose, and its motion with each joint.
 
-   From the base on, each joint turns the frame about its z by q + offset, moves it by (a, 0, d) along its own axes, and
-   turns it about its x by alpha. Both tables of Denavit and Hartenberg's numbers in use are such chains:
+   From the base on, each joint rotates the frame about its z by q + offset, moves it by (a, 0, d) along its own axes,
+   and rotates it about its x by alpha. Both conventions of Denavit and Hartenberg are such chains:
 
      standard  Rz(q + offset) Tz(d) Tx(a) Rx(alpha)     a, alpha of a row belong behind its joint (Universal Robots)
      modified  Rx(alpha) Tx(a) Rz(q + offset) Tz(d)     a, alpha of a row belong before it (Craig 1986; Franka)
@@ -37,19 +37,19 @@ typedef struct ethd__linkage {
   ethd_vec3 facing; /* unit vector in the same frame */
 } ethd__linkage;
 
-/* Where the tool is at some angles. */
+/* The tool's pose at some angles. */
 typedef struct ethd__tool {
   ethd_vec3 x;                     /* m, its point in R_0 */
   ethd_vec3 facing;                /* unit vector */
-  ethd_vec3 axis[ETHD_JOINTS_MAX]; /* of each joint, unit vectors: the tool turns by the sum of axis dq */
-  ethd_vec3 j[ETHD_JOINTS_MAX];    /* m/rad, and its point moves by the sum of j dq */
+  ethd_vec3 axis[ETHD_JOINTS_MAX]; /* of each joint, unit vectors: the tool's rate is the sum of axis dq */
+  ethd_vec3 j[ETHD_JOINTS_MAX];    /* m/rad: the point's velocity is the sum of j dq */
 } ethd__tool;
 
-/* Returns a frame at x, y, z, m, turned by roll, pitch, yaw, rad, about the fixed axes x, y, z in this order, as in a
+/* Returns a frame at x, y, z, m, rotated by roll, pitch, yaw, rad, about the fixed axes x, y, z in this order, as in a
    URDF. */
 ethd__axes ethd__axes_at(const double place[3], const double turned[3]) ETHD_RT;
 
-/* Works out the sines. The tool's point, m, and facing, a unit vector, are given in the frame behind the last row. */
+/* Makes a linkage. The tool's point, m, and facing, a unit vector, are given in the frame behind the last row. */
 void ethd__linkage_make(ethd__dh convention, const ethd__dh_row *rows, uint32_t count, const ethd__axes *base,
                         ethd_vec3 tool, ethd_vec3 facing, ethd__linkage *out) ETHD_RT;
 

@@ -3,12 +3,12 @@
 #include <math.h>
 #include <string.h>
 
-#define LEVER 0.2   /* m: by which a plate's turn, rad, counts beside its point's way, m */
-#define TURN_MOST 1 /* rad/s: a plate turns no faster, so that its turn leaves the joints room for its way */
-#define DRAWN 0.1   /* of a joint's speed: the posture draws no faster */
+#define LEVER 0.2   /* m: weight of a plate's rotation, rad, against its point's motion, m */
+#define TURN_MOST 1 /* rad/s: limit of a plate's rotation, so that the joints can still move its point */
+#define DRAWN 0.1   /* of a joint's speed: limit of the motion towards the posture */
 #define NEAR 1e-14  /* m */
 #define CORRECTIONS 4
-#define ALMOST_NONE 1e-9 /* rad or m for each m along n: less doesn't bound */
+#define ALMOST_NONE 1e-9 /* rad or m for each m along n: a smaller motion limits nothing */
 
 static uint32_t rows_of(const ethd__arm_table *table) { return table->turn > 0 ? 5 : 3; }
 
@@ -21,7 +21,7 @@ static void across_of(ethd_vec3 f, double out[2][3]) {
   ethd_vec3_put(ethd_vec3_cross(f, first), out[1]);
 }
 
-/* Works out what depends on q alone. */
+/* Computes all values that depend only on q. */
 static void arrive(ethd__arm_motion *m) {
   const uint32_t count = m->table->limits.count;
   double j[ETHD__TASK_MAX][ETHD_JOINTS_MAX];
@@ -43,7 +43,7 @@ void ethd__arm_motion_start(const ethd__arm_table *table, const double *q, ethd_
   arrive(out);
 }
 
-/* Takes q + T dq. */
+/* Moves to q + T dq. */
 static void go(ethd__arm_motion *m, const double *dq) {
   const double T = m->table->limits.period;
   const ethd_vec3 was = m->tool.x;
@@ -55,7 +55,7 @@ static void go(ethd__arm_motion *m, const double *dq) {
   m->v = ethd_vec3_scale(1 / T, ethd_vec3_sub(m->tool.x, was));
 }
 
-/* Fills the task: v, and a turn of the plate about the axis that takes it to `normal` the shortest way. */
+/* Fills the task: v, and the plate's shortest rotation to `normal`. */
 static void task_of(const ethd__arm_motion *m, ethd_vec3 v, const double *normal, double task[ETHD__TASK_MAX]) {
   ethd_vec3 turn = {0, 0, 0};
   ethd_vec3_put(v, task);
@@ -78,7 +78,7 @@ static void draw_to_posture(const ethd__arm_motion *m, double *dq) {
   for (uint32_t i = 0; i < t->limits.count; i++) dq[i] += pull[i];
 }
 
-/* Corrects dq until the point goes straight, by what J dq promises. */
+/* Corrects dq until the point moves by exactly T J dq. */
 static void straighten(const ethd__arm_motion *m, double *dq) {
   const ethd__arm_table *t = m->table;
   const double T = t->limits.period;
@@ -127,7 +127,7 @@ ethd_ability ethd__arm_motion_able(const ethd__arm_motion *m, ethd_vec3 n) {
   able.force = (double)INFINITY;
   able.delay = t->servo.delay + 2 * t->servo.damping / t->servo.frequency;
   ethd__inverse_solve(&m->inverse, task, dq);
-  /* near a singularity the point goes less far than n */
+  /* near a singularity the point moves less than n */
   const double along = fmax(0, ethd_vec3_dot(n, ethd__linkage_sum(m->tool.j, dq, t->limits.count)));
   able.speed = able.acceleration = along > ALMOST_NONE ? (double)INFINITY : 0;
   for (uint32_t i = 0; i < t->limits.count; i++) {

@@ -25,7 +25,7 @@ void ethd__arm_servo_start(const ethd__arm_table *table, const double *q, ethd__
 static void pass(const ethd__arm_table *table, const ethd__arm_ahead *to, double u, ethd__arm_joint *j) {
   const double w = table->servo.frequency, y = j->v - u, a = j->a;
   const double y1 = to->yy * y + to->ya * a, a1 = to->ay * y + to->aa * a;
-  /* the equation's integral: a1 - a + 2 z w (y1 - y) + w^2 (way - u h) = 0 */
+  /* the equation's integral: a1 - a + 2 z w (y1 - y) + w^2 (motion - u h) = 0 */
   j->q += u * to->h - (a1 - a + 2 * table->servo.damping * w * (y1 - y)) / (w * w);
   j->v = u + y1;
   j->a = a1;

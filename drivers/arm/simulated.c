@@ -26,7 +26,7 @@ void ethd__arm_sim_read(ethd__arm_sim *s, ethd_space_sense *out) {
   ethd__arm_finger_read(&s->finger, out->time_ns, out);
 }
 
-/* The joints stay where the brakes have caught them, and so does what counts as commanded. */
+/* The joints stay where the brakes stop them, and the commanded state becomes the same. */
 static void brake(ethd__arm_sim *s) {
   double q[ETHD_JOINTS_MAX];
   ethd__arm_servo_brake(&s->servo);

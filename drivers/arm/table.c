@@ -25,7 +25,7 @@ typedef struct keys {
 } keys;
 
 #define NEEDED ((double)NAN)
-#define MOST_ANGLE 6.3 /* rad: a joint turns a whole turn to either side at most; degrees are refused */
+#define MOST_ANGLE 6.3 /* rad: at most one revolution to either side, so that degrees are refused */
 #define JOINT(key, unit, min, max, def, member, brief) \
   {{key, unit, min, max, def, brief}, offsetof(joint_keys, member), NULL}
 #define KEY(section, key, unit, min, max, def, member, brief) \
@@ -41,39 +41,38 @@ static const ethd__key_row joint_rows[] = {
     JOINT("speed", "rad/s", 1e-3, 50, NEEDED, speed, "its greatest speed"),
     JOINT("acceleration", "rad/s2", 1e-2, 1e4, NEEDED, acceleration, "its greatest acceleration"),
     JOINT("torque", "Nm", 1e-3, 1e5, NEEDED, torque, "its greatest torque"),
-    JOINT("posture", "rad", -MOST_ANGLE, MOST_ANGLE, NEEDED, posture, "where it starts and what it is drawn to"),
+    JOINT("posture", "rad", -MOST_ANGLE, MOST_ANGLE, NEEDED, posture, "angle at the start, and the one to return to"),
 };
 
 static const ethd__key_row rows[] = {
-    KEY("arm", "convention", "standard|modified", 0, 1, NEEDED, convention, "order of a row's turns and moves"),
-    KEY("arm", "safe", "hold|brakes", 0, 1, NEEDED, safe, "what it does when it is told to be safe"),
-    KEY("base", "x", "m", -100, 100, 0, base[0], "place of the base"),
-    KEY("base", "y", "m", -100, 100, 0, base[1], "place of the base"),
-    KEY("base", "z", "m", -100, 100, 0, base[2], "place of the base"),
-    KEY("base", "roll", "rad", -MOST_ANGLE, MOST_ANGLE, 0, turned[0], "turn of the base"),
-    KEY("base", "pitch", "rad", -MOST_ANGLE, MOST_ANGLE, 0, turned[1], "turn of the base"),
-    KEY("base", "yaw", "rad", -MOST_ANGLE, MOST_ANGLE, 0, turned[2], "turn of the base"),
+    KEY("arm", "convention", "standard|modified", 0, 1, NEEDED, convention, "order of rotations and translations"),
+    KEY("arm", "safe", "hold|brakes", 0, 1, NEEDED, safe, "safe state"),
+    KEY("base", "x", "m", -100, 100, 0, base[0], "position of the base"),
+    KEY("base", "y", "m", -100, 100, 0, base[1], "position of the base"),
+    KEY("base", "z", "m", -100, 100, 0, base[2], "position of the base"),
+    KEY("base", "roll", "rad", -MOST_ANGLE, MOST_ANGLE, 0, turned[0], "rotation of the base"),
+    KEY("base", "pitch", "rad", -MOST_ANGLE, MOST_ANGLE, 0, turned[1], "rotation of the base"),
+    KEY("base", "yaw", "rad", -MOST_ANGLE, MOST_ANGLE, 0, turned[2], "rotation of the base"),
     KEY("tool", "x", "m", -3, 3, 0, tool[0], "the end effector's point"),
     KEY("tool", "y", "m", -3, 3, 0, tool[1], "the end effector's point"),
     KEY("tool", "z", "m", -3, 3, 0, tool[2], "the end effector's point"),
-    KEY("tool", "facing_x", "1", -1, 1, 0, facing[0], "direction in which a plate faces"),
-    KEY("tool", "facing_y", "1", -1, 1, 0, facing[1], "direction in which a plate faces"),
-    KEY("tool", "facing_z", "1", -1, 1, 1, facing[2], "direction in which a plate faces"),
-    KEY("servo", "frequency", "rad/s", 1, 1e4, NEEDED, frequency,
-        "of the second order by which a joint's speed follows"),
-    KEY("servo", "damping", "1", 0.1, 1, NEEDED, damping, "of the same"),
-    KEY("servo", "delay", "s", 0, 0.1, NEEDED, delay, "dead time from a command to the begin of its motion"),
+    KEY("tool", "facing_x", "1", -1, 1, 0, facing[0], "direction of a plate"),
+    KEY("tool", "facing_y", "1", -1, 1, 0, facing[1], "direction of a plate"),
+    KEY("tool", "facing_z", "1", -1, 1, 1, facing[2], "direction of a plate"),
+    KEY("servo", "frequency", "rad/s", 1, 1e4, NEEDED, frequency, "of the second-order lag of a joint's speed"),
+    KEY("servo", "damping", "1", 0.1, 1, NEEDED, damping, "of the same lag"),
+    KEY("servo", "delay", "s", 0, 0.1, NEEDED, delay, "dead time from a command to the beginning of its motion"),
     KEY("servo", "rate", "Hz", 125, 1000, NEEDED, rate, "of the commands"),
     KEY("inverse", "singular", "m", 1e-6, 1, NEEDED, singular, "singular value below which a direction is damped"),
-    KEY("inverse", "pull", "1/s", 0, 100, NEEDED, pull, "to the posture, by what the task leaves free"),
-    KEY("inverse", "turn", "1/s", 0, 100, NEEDED, turn, "of a plate to the normal that it is told to face; 0: never"),
+    KEY("inverse", "pull", "1/s", 0, 100, NEEDED, pull, "rate of the return to the posture, in the null space"),
+    KEY("inverse", "turn", "1/s", 0, 100, NEEDED, turn, "rate of a plate's rotation to its normal; 0: none"),
 };
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
 /* ---- sections ---- */
 
-/* Returns which joint, from 1, a section is of, 0: none. */
+/* Returns the number, from 1, of a section's joint, 0: none. */
 static uint32_t joint_of(const char *section) {
   const char *digit = section + strlen("joint");
   const bool is =

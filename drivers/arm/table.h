@@ -1,9 +1,9 @@
-/* A table of an arm: what it is, as an INI file.
+/* The description of an arm as an INI file.
 
      [arm]
      convention = standard       of the rows of Denavit and Hartenberg's numbers: linkage.h
-     safe = hold                 what it does when it is told to be safe: hold: it stops by its accelerations and holds
-                                 itself against gravity; brakes: its brakes stop it at once, and hold it without power
+     safe = hold                 its safe state. hold: it stops within its accelerations and holds its position against
+                                 gravity; brakes: its brakes stop it at once, and hold it without power
      [joint1]                    from the base, to [joint7] at most
      d = 0.1625                  m; a and d, alpha and offset (rad) are 0 where they aren't given
      alpha = 1.5707963267948966
@@ -12,7 +12,7 @@
      speed = 3.14                rad/s
      acceleration = 15           rad/s^2
      torque = 150                Nm
-     posture = 0                 rad: where it starts, and goes back to as far as its task leaves it free
+     posture = 0                 rad: angle at the start, to which it returns as far as its task allows
      [base]                      of the first row's frame in R_0: x y z, m; roll pitch yaw, rad, as in a URDF
      [tool]                      in the frame behind the last row: x y z, m: the end effector's point; facing_x facing_y
                                  facing_z: from the hand into the plate, of any length
@@ -24,8 +24,7 @@
      [inverse]                   inverse.h and motion.h
      singular = 0.03             m
      pull = 1                    1/s, to the posture
-     turn = 5                    1/s, of a plate to the normal that it is told to face, at most 1 rad/s;
-                                 0: it isn't turned
+     turn = 5                    1/s, of a plate to its commanded normal, at most 1 rad/s; 0: it isn't rotated
 
    Numbers without a default must be given. */
 #ifndef ETHD__ARM_TABLE_H

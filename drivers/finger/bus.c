@@ -8,7 +8,7 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define WAIT_MS 20 /* for which one call of service waits for bytes */
+#define WAIT_MS 20 /* wait for bytes of one call of service */
 #define ROOM 4096  /* bytes of one read */
 #define FRAMES 3   /* good frames that show that the line is the right one */
 
@@ -33,11 +33,11 @@ static void take(ethd__finger_bus *b, const uint8_t *bytes, size_t count, int64_
   ethd__ring_frame frame;
   uint64_t corrupt = b->decoder.counters.corrupt;
   while (ethd__decoder_next(&b->decoder, &at, bytes + count, &frame)) receive(b, &frame, arrival_ns);
-  b->inbox.newest.lost += b->decoder.counters.corrupt != corrupt; /* at once, before a gap in the sequence shows it */
+  b->inbox.newest.lost += b->decoder.counters.corrupt != corrupt; /* before the sequence shows the gap */
   ethd__inbox_put(&b->inbox);
 }
 
-/* Begins anew with the next frame, because bytes before it are gone. */
+/* Begins anew with the next frame, because earlier bytes are lost. */
 static void restart(ethd__finger_bus *b) {
   ethd__decoder_restart(&b->decoder);
   ethd__board_clock_restart(&b->clock);
@@ -51,7 +51,7 @@ static ethd_status reopen(ethd__finger_bus *b, int64_t now_ns) {
   return status;
 }
 
-/* On a virtual clock nothing waits, and bytes that are there count as arrived now. */
+/* On a virtual clock it doesn't wait, and available bytes count as arrived now. */
 ethd_status ethd__finger_bus_service(void *device, uint32_t unit, int64_t now_ns) {
   ethd__finger_bus *b = device;
   uint8_t bytes[ROOM];

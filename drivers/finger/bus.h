@@ -1,5 +1,5 @@
-/* What the drivers of sensors on the proximity ring's line share. They receive the same frames (proximity_ring/frame.h)
-   with the same CRC, sequence and clock, but the 16 counts have another meaning, which each driver adds. */
+/* The shared part of the drivers of sensors on the proximity ring's line. They receive the same frames
+   (proximity_ring/frame.h) with the same CRC, sequence and clock; only the meaning of the 16 counts differs. */
 #ifndef ETHD__FINGER_BUS_H
 #define ETHD__FINGER_BUS_H
 
@@ -7,7 +7,7 @@
 #include "proximity_ring/board_clock.h"
 #include "proximity_ring/port.h"
 
-/* The settings that such drivers have in common come first in their tables. */
+/* The common settings of such drivers come first in their tables. */
 enum { ETHD__BUS_BAUD, ETHD__BUS_DELAY, ETHD__BUS_PATIENCE, ETHD__BUS_PARAMS };
 #define ETHD__BUS_ROWS                                                                                          \
   [ETHD__BUS_BAUD] = {"baud", "1/s", 9600, 12e6, 500000, "baud rate of the line"},                              \

@@ -8,9 +8,9 @@
 
 #define SECONDS_MAX 9e9    /* s: 285 years, what 64 bits of ns hold */
 #define NOISE_MAX 1.0      /* m, m/s */
-#define BACK_NS 1000000000 /* no network holds a datagram back for so long: the sender's clock jumped back */
-#define AHEAD_NS 50000000  /* nor is one so much quicker than all before: it jumped ahead */
-#define ORDER_MAX 1000     /* exposures that may overtake a datagram; if more do, the sender has restarted */
+#define BACK_NS 1000000000 /* no network delays a datagram for this time: the sender's clock jumped back */
+#define AHEAD_NS 50000000  /* no datagram is quicker by this time than all before: the clock jumped ahead */
+#define ORDER_MAX 1000     /* exposures that may overtake a datagram; with more the sender has restarted */
 
 /* ---- the datagram ---- */
 
@@ -57,7 +57,7 @@ bool ethd__exposure_decode(const char *bytes, size_t count, ethd__exposure *out,
   json_t *p = NULL, *v = NULL;
   *out = (ethd__exposure){.confidence = 1};
   if (count > ETHD__EXPOSURE_SIZE) return refuse(why, "a datagram of at most 1024 bytes is allowed");
-  const locale_t own = uselocale(ethd__c_locale); /* jansson asks it for the decimal point */
+  const locale_t own = uselocale(ethd__c_locale); /* jansson reads the decimal point from it */
   json_t *root = json_loadb(bytes, count, JSON_REJECT_DUPLICATES, &error);
   const bool is_read = root && !json_unpack_ex(root, &error, JSON_STRICT, "{s:I, s:F, s?o, s?F, s?o, s?F, s?F}", "seq",
                                                &seq, "t", &t, "p", &p, "noise", &out->noise, "v", &v, "v_noise",
@@ -70,7 +70,7 @@ bool ethd__exposure_decode(const char *bytes, size_t count, ethd__exposure *out,
 
 /* ---- clock ---- */
 
-/* Differences wrap round as the clocks do, because neither clock's zero means anything. */
+/* Differences wrap round as the clocks do, because the clocks' zeros are arbitrary. */
 static int64_t minus(int64_t a, int64_t b) { return (int64_t)((uint64_t)a - (uint64_t)b); }
 static int64_t plus(int64_t a, int64_t b) { return (int64_t)((uint64_t)a + (uint64_t)b); }
 
@@ -84,8 +84,8 @@ static void begin(ethd__camera_clock *c, int64_t late) {
   c->in_block = 0;
 }
 
-/* A datagram that the network held back is older by both its count and its clock. Where only one of them is older, the
-   clock was set back, or the bridge was started again and counts from 0. */
+/* A datagram delayed by the network is older by both its count and its clock. If only one of them is older, the clock
+   was set back, or the bridge was restarted and counts from 0. */
 static bool jumped(const ethd__camera_clock *c, const ethd__exposure *e, int64_t late) {
   int64_t off = minus(late, lesser(c->least[0], c->least[1]));
   int32_t step = (int32_t)(e->seq - c->seq);

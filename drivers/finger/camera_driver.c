@@ -1,8 +1,8 @@
-/* The driver of a motion capture or a headset, which stands beside a driver that moves, in the plane or in space: the
-   finger's centre in R_0 comes as datagrams of a bridge (camera.h).
+/* The driver of a motion capture or a headset, beside a driver of the motors, in the plane or in space: the finger's
+   centre in R_0 comes as datagrams of a bridge (camera.h).
 
-   It listens where `listen` says and nowhere else. That is this machine alone (127.0.0.1, ::1) unless `from` names the
-   one address whose datagrams count, because any sender of such datagrams moves the ring. */
+   It listens only at the address `listen`. This is a loopback address (127.0.0.1, ::1) unless `from` names the one
+   address whose datagrams count, because any sender of such datagrams moves the ring. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -21,7 +21,7 @@
 #include "no_joints.h"
 #include "text/error_text.h"
 
-#define WAIT_MS 20    /* for which one call of service waits for a datagram */
+#define WAIT_MS 20    /* wait for a datagram of one call of service */
 #define AT_ONCE 64    /* datagrams that one call of service takes at most */
 #define WAITING 65536 /* datagrams that a socket holds at most */
 
@@ -46,7 +46,7 @@ typedef struct camera {
   double rate, confidence;
   uint32_t axes;    /* that a position needs: 2 in the plane, 3 in space */
   bool is_virtual;  /* whether the clock is virtual */
-  int64_t heard_ns; /* when it was last listened to */
+  int64_t heard_ns; /* instant of the last listening */
   ethd__camera_clock clock;
   ethd__inbox inbox;
   char why[ETHD_MESSAGE_MAX]; /* the last datagram was refused; "": none was */
@@ -121,7 +121,7 @@ static void take(camera *c, const char *bytes, size_t count, int64_t arrival_ns)
   ethd__inbox_judge(&c->inbox, is_good);
 }
 
-/* Takes one datagram; false: there is none. One that is longer than any exposure is cut and then refused. */
+/* Receives one datagram; false: there is none. A datagram longer than any exposure is cut and then refused. */
 static bool receive(camera *c, int64_t arrival_ns) {
   char bytes[ETHD__EXPOSURE_SIZE + 1];
   struct sockaddr_storage from = {.ss_family = 0};
@@ -135,7 +135,7 @@ static bool receive(camera *c, int64_t arrival_ns) {
   return true;
 }
 
-/* Drops what waits. */
+/* Drops the waiting datagrams. */
 static void drain(const camera *c) {
   char byte;
   for (int i = 0; i < WAITING && recv(c->fd, &byte, 1, MSG_DONTWAIT) >= 0; i++) continue;

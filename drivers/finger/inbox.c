@@ -40,7 +40,7 @@ static int64_t rows_of(const ethd__inbox *in, int64_t now_ns) {
   return rows;
 }
 
-/* Takes the newest reading and adds its rows; returns whether it is new at this tick. */
+/* Reads the newest reading and adds its rows; returns whether it is new at this tick. */
 static bool take(ethd__inbox *in, int64_t now_ns, int64_t *faults) {
   const ethd__sighting *s = &in->taken;
   (void)!ethd_cell_take(in->cell, &in->taken);

@@ -1,4 +1,4 @@
-/* Hands a sensor's newest reading from its I/O thread to the control thread, with counts of what went wrong before.
+/* Passes a sensor's newest reading from its I/O thread to the control thread, with counts of earlier errors.
 
      I/O thread   ethd__inbox_put -> cell          [rt]   cell -> ethd__inbox_read -> sense, rows 15, 18, 20      */
 #ifndef ETHD__FINGER_INBOX_H
@@ -18,7 +18,7 @@ typedef struct ethd__sighting {
   double noise, v_noise;         /* m, m/s: sd of each axis; v_noise 0: v isn't known */
   uint64_t readings;             /* good readings */
   uint64_t lost;                 /* readings damaged, missing in the sequence, or out of order: row 15 */
-  uint64_t refused;              /* readings that arrived whole, but that no finger can give */
+  uint64_t refused;              /* complete readings that no finger can cause */
   uint64_t jumps;                /* jumps of the sender's clock: row 20 */
   uint32_t refused_in_a_row;     /* ETHD__REFUSED_MAX of them are row 18 */
 } ethd__sighting;
@@ -28,7 +28,7 @@ typedef struct ethd__sighting {
 typedef struct ethd__inbox {
   ethd_cell *cell;
   pthread_mutex_t lock;  /* of `newest`, for figures */
-  int64_t gap_ns;        /* if no reading comes for so long, at least one is lost */
+  int64_t gap_ns;        /* if no reading comes for this time, at least one is lost */
   ethd__sighting newest; /* the I/O thread's */
   ethd__sighting taken;  /* the control thread's, as all that follows */
   uint64_t read, lost, jumps;
@@ -38,18 +38,18 @@ typedef struct ethd__inbox {
 ETHD_MUST_CHECK ethd_status ethd__inbox_open(ethd__inbox *inbox, double rate);
 void ethd__inbox_close(ethd__inbox *inbox);
 
-/* Hands `newest` over. [I/O] */
+/* Passes `newest` to the control thread. [I/O] */
 void ethd__inbox_put(ethd__inbox *inbox);
 
-/* Sets `newest`'s instants. A sender's clock is placed better with each quick arrival, which may move a reading before
-   the last one; it then counts as taken just after it, since readings come in their order. [I/O] */
+/* Sets `newest`'s instants. Each quick arrival improves the synchronisation of the sender's clock, which may move a
+   reading before the last one; it then counts as taken just after the last one, since readings come in order. [I/O] */
 void ethd__inbox_stamp(ethd__inbox *inbox, int64_t sample_ns, int64_t arrival_ns);
 
-/* Counts a reading that no finger can give, or a good one. [I/O] */
+/* Counts a reading as good, or as one that no finger can cause. [I/O] */
 void ethd__inbox_judge(ethd__inbox *inbox, bool is_good);
 
-/* Gives a reading that is new at the tick's instant. One that was taken after it, while a late tick was on its way,
-   waits for the next tick: a controller drops readings of the future. */
+/* Gives a reading that is new at the tick's instant. A reading taken after this instant, during a late tick, waits for
+   the next tick: a controller drops readings of the future. */
 void ethd__inbox_read(ethd__inbox *inbox, int64_t now_ns, ethd_sense *out) ETHD_RT;
 void ethd__inbox_read_space(ethd__inbox *inbox, int64_t now_ns, ethd_space_sense *out) ETHD_RT;
 

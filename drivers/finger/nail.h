@@ -1,6 +1,6 @@
-/* The finger's nail pushes a thin plate, and an optical sensor measures the distance to it, which says where the
-   finger's centre is along one direction. Across that direction nothing is measured; the finger is taken to be centred,
-   since the plate's guide holds it.
+/* The finger's nail pushes a thin plate, and an optical sensor measures the distance to it. The distance gives the
+   position of the finger's centre along one direction. Across that direction there is no measurement; the finger counts
+   as centred, since the plate's guide holds it.
 
         (sensor) <--- distance ---> |plate( finger )      centre = (rest - distance) u
                                                           u: from the ring's centre toward the sensor
@@ -17,7 +17,7 @@
 typedef struct ethd__nail {
   ethd_vec u;
   double rest;     /* m: the distance when the finger is centred */
-  double furthest; /* m: a larger distance isn't the plate's */
+  double furthest; /* m: a larger distance isn't to the plate */
 } ethd__nail;
 
 /* Fills the finger's centre. False: the distance is out of range, or NaN. [rt] */

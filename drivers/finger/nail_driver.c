@@ -1,5 +1,5 @@
-/* The driver of a plate on the nail with one optical sensor, on the proximity ring's line, beside a driver that moves.
-   It uses one count of a frame, with that sensor's calibration. */
+/* The driver of a plate on the nail with one optical sensor, on the proximity ring's line, beside a driver of the
+   motors. It uses one count of a frame, with that sensor's calibration. */
 #include <stdlib.h>
 
 #include "ethd/maths.h"
@@ -32,8 +32,8 @@ typedef struct nail_plate {
   double noise;
 } nail_plate;
 
-/* The farther the plate, the more metres a count is. The variance of a rounded value is a twelfth of its step
-   squared. */
+/* The step of a count in metres grows with the plate's distance. The variance of a rounded value is a twelfth of its
+   step squared. */
 static bool means(const void *sensor, const uint16_t counts[ETHD__FRAME_SENSORS], ethd__sighting *out) {
   const nail_plate *n = sensor;
   uint16_t c = counts[n->index];

@@ -5,7 +5,7 @@
 #include "ethd/maths.h"
 
 #define PI 3.14159265358979323846
-#define GRID 201 /* points across the ring, on whose grid centres are counted */
+#define GRID 201 /* points across the ring, of the grid of centres */
 
 double ethd__zones_distance(const ethd__zones *z, double finger_radius, ethd_vec centre, uint32_t k) {
   double along = ethd_vec_dot(z->ray[k], centre), across = ethd_vec_cross(z->ray[k], centre);
@@ -83,7 +83,7 @@ void ethd__zones_prepare(uint32_t count, double reach, double ring_radius, doubl
   for (uint32_t l = 0; l <= count; l++) {
     const zone_sums *s = &by_length[l];
     out->offset[l] = out->noise[l] = (double)NAN;
-    if (!(s->n > 0)) continue; /* no place lights as many */
+    if (!(s->n > 0)) continue; /* no position lights this number */
     out->offset[l] = s->along / s->n;
     double variance = (s->square / s->n - out->offset[l] * out->offset[l]) / 2;
     out->noise[l] = sqrt(fmax(variance, 0) + switching * switching);

@@ -1,5 +1,5 @@
-/* The driver of a ring of on-off light barriers on the proximity ring's line, beside a driver that moves. A barrier is
-   lit if its count reaches `level`. */
+/* The driver of a ring of on-off light barriers on the proximity ring's line, beside a driver of the motors. A barrier
+   is lit if its count reaches `level`. */
 #include <stdlib.h>
 
 #include "finger/bus.h"
@@ -26,7 +26,7 @@ typedef struct zones_ring {
   double level;
 } zones_ring;
 
-/* Refuses a frame in which a barrier doesn't answer, since that one may be lit or not. */
+/* Refuses a frame in which a barrier doesn't answer, since it may be lit or not. */
 static bool means(const void *sensor, const uint16_t counts[ETHD__FRAME_SENSORS], ethd__sighting *out) {
   const zones_ring *r = sensor;
   uint32_t lit = 0;

@@ -8,7 +8,7 @@
 #include "add_sense.h"
 #include "inject/values.h"
 
-#define COMMANDS_MAX 1024 /* commands that a delay may hold back; a power of two */
+#define COMMANDS_MAX 1024 /* commands in a delay at most; a power of two */
 #define READINGS_MAX 64   /* readings that wait */
 
 typedef struct stamped {
@@ -21,7 +21,7 @@ typedef struct held_reading {
   ethd__inject_sense sense;
 } held_reading;
 
-/* ---- what the fronts have for a reading of the finger, and for a command ---- */
+/* ---- readings and commands of the two fronts ---- */
 
 typedef struct inject_front {
   int64_t reading; /* bits of `have` */
@@ -78,7 +78,7 @@ void ethd__inject_free(ethd__inject *in) {
   free(in);
 }
 
-/* ---- what is due ---- */
+/* ---- due injections ---- */
 
 static bool is_due(const ethd__injection *i, int64_t t) { return t >= i->from_ns && t < i->until_ns; }
 
@@ -113,7 +113,7 @@ static void hold_reading(ethd__inject *in, double delay, const ethd__inject_sens
   r->sense = *s;
 }
 
-/* Takes the newest sample that is due; it and all older ones leave the queue. */
+/* Gives the newest sample that is due, and removes it and all older ones from the queue. */
 static void release_readings(ethd__inject *in, ethd__inject_sense *s) {
   for (uint64_t back = 0; back < READINGS_MAX && back < in->readings; back++) {
     held_reading *r = &in->held[(in->readings - 1 - back) % READINGS_MAX];
@@ -170,7 +170,7 @@ bool ethd__inject_after(ethd__inject *in, ethd_status status, ethd__inject_sense
 
 /* ---- commands ---- */
 
-/* Returns the newest command that is `delay` old; before there is one, nothing of the present one. */
+/* Returns the newest command that is at least `delay` old; before there is one, 0 times the present one. */
 static ethd__inject_order delayed(const ethd__inject *in, double delay, const ethd__inject_order *asked) {
   ethd__inject_order nothing = *asked;
   int64_t until = in->now - (int64_t)rint(1e9 * delay);

@@ -16,7 +16,7 @@
 
 static const struct {
   const char *name;
-  int32_t plane, space; /* numbers of the name in each front; 0: it has none; NOT: the front doesn't know it */
+  int32_t plane, space; /* count of the channel's numbers in each front; 0: none; NOT: the front has no such channel */
   uint32_t kinds;
 } channels[ETHD__INJECT_CHANNELS] = {
     [ETHD__INJECT_Q] = {"q", 2, NOT, VALUES},

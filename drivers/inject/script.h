@@ -1,4 +1,4 @@
-/* A script of faults: what a device does wrong, and when. One line for each injection, and # begins a comment.
+/* A script of a device's faults and their times. One line for each injection, and # begins a comment.
 
        TIME CHANNEL KIND [by=NUMBER] [for=SECONDS]
 
@@ -9,9 +9,9 @@
        0.700  write    drop            for=0.005
        0.900  fault9   set                          # the drive reports a fault
 
-   TIME counts from the first sample after the device's start. Without a number a channel means all of its
-   numbers: q is q1 and q2. What the channels and kinds are stands in script.c, in two tables. A device in space has x1 to
-   x3, v1 to v3, centre1 to centre3 (its reading) and finger1 to finger3. */
+   TIME counts from the first sample after the device's start. Without a number a channel means all of its numbers: q is
+   q1 and q2. Two tables in script.c list the channels and kinds. A device in space has x1 to x3, v1 to v3, centre1 to
+   centre3 (its reading) and finger1 to finger3. */
 #ifndef ETHD__INJECT_SCRIPT_H
 #define ETHD__INJECT_SCRIPT_H
 
@@ -52,8 +52,8 @@ typedef enum ethd__inject_kind {
   ETHD__INJECT_NAN,
   ETHD__INJECT_DROP,  /* it never arrives */
   ETHD__INJECT_DELAY, /* it arrives `by` seconds later */
-  ETHD__INJECT_FAIL,  /* the call says that the device failed */
-  ETHD__INJECT_STALE, /* the call says that there is nothing newer */
+  ETHD__INJECT_FAIL,  /* the call reports a failed device */
+  ETHD__INJECT_STALE, /* the call reports no newer data */
   ETHD__INJECT_SET,   /* the row is seen */
   ETHD__INJECT_GRAVE, /* the row is seen, and is grave */
   ETHD__INJECT_KINDS
@@ -75,7 +75,7 @@ typedef struct ethd__script {
   ethd__injection *at;
 } ethd__script;
 
-/* Whose faults a script tells. */
+/* The device of a script. */
 typedef struct ethd__script_of {
   double period; /* s */
   bool in_space; /* the device has the front of space.h */

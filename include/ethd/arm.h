@@ -28,16 +28,16 @@ typedef struct ethd_arm {
 
 /* While w = |sin| of the angle between the links, |det J| / (L1 L2), is at least this, the inverse of J
    is adj(J) / det(J). Nearer to the singularity it is J^T (J J^T + lambda^2 I)^-1, damped least squares,
-   with lambda^2 = lambda_0^2 (1 - w / ETHD_ARM_SINGULAR)^2 (Nakamura and Hanafusa 1986), which is
-   continuous, and lambda_0 = ETHD_ARM_SINGULAR L1 L2 / |J|, about the smaller singular value there: the
-   gain of the inverse is at most 1.3 times its value where the damping begins. */
+   with lambda^2 = lambda_0^2 (1 - w / ETHD_ARM_SINGULAR)^2 (Nakamura and Hanafusa 1986), which is continuous. lambda_0
+   = ETHD_ARM_SINGULAR L1 L2 / |J|, which is close to the smaller singular value where the damping begins. The gain of
+   the inverse is at most 1.3 times its value at that point. */
 #define ETHD_ARM_SINGULAR 0.02
 
 /* Where the ring is, and how it moves with the joints. Row-major J: dx/dq1, dx/dq2, dy/dq1, dy/dq2. */
 typedef struct ethd_pose {
   ethd_vec x;      /* ring centre, m, in R_0 */
   double j[4];     /* m/rad */
-  double j_inv[4]; /* rad/m: J^-1, damped near a singularity; in a singular J's null direction 0 */
+  double j_inv[4]; /* rad/m: J^-1, damped near a singularity; 0 in the null direction of a singular J */
 } ethd_pose;
 
 /* Checks that both links are within their limits and that the mechanism is one of the two: ETHD_E_RANGE, for NaN
@@ -50,16 +50,16 @@ ETHD_API const char *ethd_arm_name(ethd_mechanism mechanism);
 /* Works out forward kinematics, Jacobian and its (damped) inverse at joint angles q, rad. [any, rt-safe] */
 ETHD_API void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) ETHD_RT;
 
-/* Finds the joint angles, rad in (-pi, pi], that put the ring's centre at x, m in R_0. With elbow >= 0 link 2 is turned
-   counter-clockwise from link 1, with elbow < 0 clockwise. ETHD_E_UNREACHABLE: x lies outside the annulus of
+/* Finds the joint angles, rad in (-pi, pi], that put the ring's centre at x, m in R_0. With elbow >= 0 link 2 is
+   rotated counter-clockwise from link 1, with elbow < 0 clockwise. ETHD_E_UNREACHABLE: x lies outside the annulus of
    ethd_arm_reach; q is untouched. [any, rt-safe] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) ETHD_RT;
 
 /* Gives the reachable annulus about the base joint: inner = |L1 - L2|, outer = L1 + L2, m. [any, rt-safe] */
 ETHD_API void ethd_arm_reach(const ethd_arm *arm, double *inner, double *outer) ETHD_RT;
 
-/* What moves the ring, as the device's driver or a configuration's [arm] knows it, for laws that look ahead. All
-   members are doubles; NaN: not known. */
+/* The arm's dynamics, from the device's driver or a configuration's [arm], for laws that look ahead. All members are
+   doubles; NaN: not known. */
 typedef struct ethd_dynamics {
   double mass[2];  /* kg at the ring of joint 1 and joint 2: the inertia of a link's absolute angle is mass L^2 */
   double friction; /* N at the ring: torque L friction sign(dq) of each joint */
@@ -70,7 +70,7 @@ typedef struct ethd_dynamics {
 /* Returns dynamics with all numbers unknown. [any] */
 ETHD_API ethd_dynamics ethd_dynamics_unknown(void);
 
-/* Returns `first`, with each number that it doesn't know taken from `second`. [any] */
+/* Returns `first`, with each unknown number replaced by that of `second`. [any] */
 ETHD_API ethd_dynamics ethd_dynamics_known(const ethd_dynamics *first, const ethd_dynamics *second);
 
 /* Returns m v for a row-major 2x2 matrix such as J or J^-1. [any, rt-safe] */

@@ -3,7 +3,7 @@
    Thread tags close every contract in these headers:
      [main]  the thread that created the object; may allocate and block
      [rt]    the control thread: bounded work, no heap, lock, system call, errno or stdio
-     [any]   any thread, as said there
+     [any]   any thread, as the contract says
    ETHD_RT marks prototypes and function-pointer types of the [rt] side; clang 20 and later
    checks it with -Wfunction-effects. */
 #ifndef ETHD_BASE_H
@@ -43,7 +43,7 @@ ETHD_BEGIN_DECLS
   X(E_UNKNOWN, -5, "an unknown name")                                            \
   X(E_DUPLICATE, -6, "a name or key occurs twice")                               \
   X(E_SYNTAX, -7, "text that cannot be read")                                    \
-  X(E_GEOMETRY, -8, "a shape that cannot be: degenerate or self-intersecting")   \
+  X(E_GEOMETRY, -8, "an impossible shape: degenerate or self-intersecting")      \
   X(E_UNREACHABLE, -9, "out of the arm's reach")                                 \
   X(E_ABI, -10, "a plugin of another ABI; rebuild it against these headers")     \
   X(E_SIZE, -11, "a struct of other headers; compile again with this version's") \
@@ -70,11 +70,11 @@ typedef enum ethd_status {
 /* Returns the sentence of a status, or "an unknown status" for any other number. [any, rt-safe] */
 ETHD_API const char *ethd_status_sentence(ethd_status status) ETHD_RT;
 
-#define ETHD_MESSAGE_MAX 512 /* bytes: room for one line to people about a failure */
+#define ETHD_MESSAGE_MAX 512 /* bytes of a one-line message to the user about a failure */
 
-/* What went wrong, as data: the library formats no text. `name` is the parameter, word or file the
-   failure is about ("contact.k_e"), cut to fit; `line` is 1-based, 0 without text; `found`, `min` and
-   `max` are NaN where no number is meant. */
+/* A failure as data: the library formats no text. `name` is the parameter, word or file that caused the failure
+   ("contact.k_e"), cut to fit; `line` is 1-based, 0 without text; `found`, `min` and `max` are NaN for a failure
+   without numbers. */
 typedef struct ethd_error {
   ethd_status status;
   int line;

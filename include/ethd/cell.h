@@ -1,7 +1,7 @@
-/* The latest value of a slow feed: one thread puts, another takes, neither ever waits. Links from libethd.
+/* The latest value of a slow feed: one thread writes, another reads, neither ever waits. Links from libethd.
 
-   A triple buffer: the writer fills a slot of its own and exchanges it for the middle one, the reader
-   exchanges the middle one for its own. The reader always gets a complete value, and the newest. */
+   A triple buffer: the writer fills its own slot and exchanges it for the middle one; the reader exchanges its own slot
+   for the middle one. The reader always gets a complete value, and the newest. */
 #ifndef ETHD_CELL_H
 #define ETHD_CELL_H
 
@@ -17,11 +17,11 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_cell_create(size_t size, ethd_cell **o
 /* Frees the cell; NULL is allowed. [main] */
 ETHD_API void ethd_cell_destroy(ethd_cell *cell);
 
-/* Puts a value, which replaces one that hasn't been taken. One writer at a time. [any, rt-safe] */
+/* Writes a value, which replaces one that hasn't been read. One writer at a time. [any, rt-safe] */
 ETHD_API void ethd_cell_put(ethd_cell *cell, const void *value) ETHD_RT;
 
-/* Takes the newest value. ETHD_STATUS_STALE: nothing newer than the last one has come; `value` then holds that one
-   again, or is untouched if nothing ever came. One reader at a time. [any, rt-safe] */
+/* Reads the newest value. ETHD_STATUS_STALE: no value has been written since the last read; `value` then holds the last
+   one again, or is untouched if none was ever written. One reader at a time. [any, rt-safe] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_cell_take(ethd_cell *cell, void *value) ETHD_RT;
 
 ETHD_END_DECLS

@@ -1,8 +1,8 @@
 /* Configurations: an INI file becomes a setup and the choice of a device.
    Links from libethd-drivers and libethd.
 
-   A file with a section [space] configures the front in space (space.h), any other one that of the plane. Sections that
-   the fronts share mean the same; those of the other front are refused.
+   A file with a section [space] configures the controller in space (space.h), any other file the one in the plane
+   (control.h). Sections that both have mean the same; sections of the other one are refused.
 
    Everything has a default, so an empty file is valid. Files are read strictly: unknown sections or keys, duplicates,
    values out of range, NaN, hex, trailing junk and over-long lines are errors with file:line, what was found and what
@@ -18,28 +18,28 @@
 ETHD_BEGIN_DECLS
 
 typedef struct ethd_config {
-  ethd_setup setup;                   /* ready to create a controller with; setup.scene = scene */
-  ethd_scene *scene;                  /* owned, without what the arm can't reach; NULL if none is configured */
+  ethd_setup setup;                   /* ready for ethd_control_create; setup.scene = scene */
+  ethd_scene *scene;                  /* owned, without objects out of the arm's reach; NULL if none is configured */
   char *path;                         /* of the file, NULL for defaults */
   char *text;                         /* as it was read, for recordings */
-  char *scene_text;                   /* as it was read, of solids too; NULL if there are none */
+  char *scene_text;                   /* as it was read, also of solids; NULL if there are none */
   char *folder;                       /* relative paths start here */
   uint32_t limits_given;              /* bit i: of ethd_limit_rows[i] */
   char device[ETHD_DRIVERS_TEXT_MAX]; /* the drivers' ids as written, "sim" by default */
   ethd_setting *settings;             /* the other keys of [device] */
   uint32_t setting_count;
-  const ethd_law **laws; /* built in and of plugins; ends with NULL */
+  const ethd_law **laws; /* built-in laws and those of plugins; ends with NULL */
   char **plugins;        /* their files */
   uint32_t plugin_count;
-  int32_t is_space;       /* 1: `space` is what the file says, and `setup` has defaults */
-  ethd_space_setup space; /* ready to create a controller with; it has the parameters on the solids' materials */
+  int32_t is_space;       /* 1: the file configures `space`, and `setup` has defaults */
+  ethd_space_setup space; /* ready for ethd_space_create; it has the parameters on the solids' materials */
   ethd_solids *solids;    /* owned; NULL if none are configured */
 } ethd_config;
 
-/* What a configuration is read from, for the functions below. */
+/* The source of a configuration, for the functions below. */
 typedef struct ethd_config_source {
-  ethd_sizes sizes; /* with which the program was compiled */
-  uint32_t config;  /* sizeof(ethd_config) with which it was compiled */
+  ethd_sizes sizes; /* of the headers with which the program was compiled */
+  uint32_t config;  /* sizeof(ethd_config) of those headers */
   int32_t received; /* 1: another person made it */
   const char *path; /* of the file; with `text` a name for messages; NULL: none */
   const char *text; /* NULL: the file's */
@@ -48,13 +48,14 @@ typedef struct ethd_config_source {
 } ethd_config_source;
 
 /* Reads a configuration for the functions below. ETHD_E_SIZE: the program was compiled with headers in which a struct
-   that both write has another size. */
+   that program and library both write has another size. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_make(const ethd_config_source *source, ethd_config **out,
                                                       char message[ETHD_MESSAGE_MAX]);
 
 /* Reads a configuration; path NULL gives the defaults. On failure *out is NULL and message holds one line:
    ETHD_E_FILE, ETHD_E_SYNTAX, ETHD_E_UNKNOWN, ETHD_E_DUPLICATE, ETHD_E_MEMORY, the statuses of ethd_scene_parse or
-   ethd_solids_parse, ethd_plugin_open and ethd_config_make, and those of ethd_setup_check or ethd_space_check. Its plugins are loaded, and their code runs. */
+   ethd_solids_parse, ethd_plugin_open and ethd_config_make, and those of ethd_setup_check or ethd_space_check. Its
+   plugins are loaded, and their code runs. */
 static inline ETHD_MUST_CHECK ethd_status ethd_config_load(const char *path, ethd_config **out,
                                                            char message[ETHD_MESSAGE_MAX]) {
   const ethd_config_source source = {ethd_sizes_here(), (uint32_t)sizeof(ethd_config), 0, path, NULL, 0, NULL};
@@ -80,8 +81,7 @@ static inline ETHD_MUST_CHECK ethd_status ethd_config_parse(const char *text, si
 }
 
 /* The same for text that another person made: a plugin is refused as ethd_config_load_received refuses it
-   (ETHD_E_LOAD), and none of its code runs; nor is a scene read from outside of `folder` or through a link
-   (ETHD_E_FILE). */
+   (ETHD_E_LOAD), and none of its code runs. A scene outside of `folder` or behind a link isn't read (ETHD_E_FILE). */
 static inline ETHD_MUST_CHECK ethd_status ethd_config_parse_received(const char *text, size_t length, const char *name,
                                                                      const char *folder, ethd_config **out,
                                                                      char message[ETHD_MESSAGE_MAX]) {
@@ -89,11 +89,11 @@ static inline ETHD_MUST_CHECK ethd_status ethd_config_parse_received(const char 
   return ethd_config_make(&source, out, message);
 }
 
-/* Frees the configuration with its scene; destroy the controllers made of it first. NULL is allowed. [main] */
+/* Frees the configuration with its scene; destroy the controllers that use it first. NULL is allowed. [main] */
 ETHD_API void ethd_config_free(ethd_config *config);
 
-/* Changes the law of a kind, "tracking", "contact" or "transition", in `setup`, not in config->setup. Values that were
-   chosen for keys that the new law has too are kept, the rest is dropped; the file's preset still applies.
+/* Changes the law of a kind, "tracking", "contact" or "transition", in `setup`, not in config->setup. It keeps the
+   values that were chosen for keys that the new law has too, and drops the rest; the file's preset still applies.
    ETHD_E_ARGUMENT: no such kind; ETHD_E_UNKNOWN: no law of that id; else the statuses of ethd_setup_check. A refusal
    changes nothing. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_law(const ethd_config *config, const char *kind, const char *id,
@@ -103,8 +103,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_law(const ethd_config *config, 
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_transition(const ethd_config *config, const char *id,
                                                             ethd_setup *setup, char message[ETHD_MESSAGE_MAX]);
 
-/* Sets "section.key" in `setup` as the file would ("contact.k_e", "2000"). Keys that name a file, a law, a preset or a
-   device can't be set in this way (ETHD_E_ARGUMENT). ETHD_E_SYNTAX, ETHD_E_UNKNOWN, ETHD_E_RANGE and the statuses of
+/* Sets "section.key" in `setup` as the file would ("contact.k_e", "2000"). It can't set keys that name a file, a law, a
+   preset or a device (ETHD_E_ARGUMENT). ETHD_E_SYNTAX, ETHD_E_UNKNOWN, ETHD_E_RANGE and the statuses of
    ethd_setup_check. A refusal changes nothing. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_set(const ethd_config *config, const char *key, const char *value,
                                                      ethd_setup *setup, char message[ETHD_MESSAGE_MAX]);
@@ -117,7 +117,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_space_set(const ethd_config *co
                                                            const char *value, ethd_space_setup *setup,
                                                            char message[ETHD_MESSAGE_MAX]);
 
-/* Writes an error that a call of the library left as "file:line: name: sentence; found 3, allowed 0 to 2". */
+/* Writes the error of a library call as the text "file:line: name: sentence; found 3, allowed 0 to 2". */
 ETHD_API void ethd_error_text(const char *file, const ethd_error *error, char message[ETHD_MESSAGE_MAX]);
 
 ETHD_END_DECLS

@@ -1,28 +1,28 @@
-/* A device: what moves the ring and measures ring and finger. Links from libethd-drivers and libethd.
+/* A device moves the ring and measures ring and finger. Links from libethd-drivers and libethd.
 
    open [main] may block; start [main] enables; read and write [rt] are wait-free and bounded; service does
    one piece of blocking I/O: an I/O thread for each unit calls it, or the virtual clock in lock-step, so
    that a run with the same drivers repeats bit for bit; safe [any thread, any state] can't fail: zero torque
    from now on; stop [main] disables; close [main] frees. The simulated device is a driver like any other.
 
-   A driver may have a pair of read and write for each front: read and write for the plane, whose controller is
-   control.h's, and read_space and write_space for space (space.h). A device is opened for one of the two.
+   A driver may have two pairs of functions: read and write for the plane, whose controller is control.h's, and
+   read_space and write_space for space (space.h). A device is opened for one of the two.
 
-   Any function but open and close may be NULL: the driver then has nothing to do, to read or to limit there. But a
-   driver that has write or write_space must have safe too, because what moves must be able to let go.
+   Any function except open and close may be NULL: the driver then has nothing to do, to read or to limit there. But a
+   driver that has write or write_space must have safe too, because a device that moves must be able to stop.
 
-   One device may consist of several drivers (a servo, its encoders, a proximity ring): each adds its
-   values to the sense, and reads its part of the command. They are read and written in the order of their
-   names: where two give the same number, the later one's counts (servo, counter: the counter's angles). Those that have
-   write start last and stop first, since a drive that is enabled mustn't wait for another driver.
+   One device may consist of several drivers (a servo, its encoders, a proximity ring). Each adds its values to the
+   sense and reads its part of the command. They are read and written in the order of their names: if two give the same
+   number, the later one counts (servo, counter: the counter's angles). Drivers that have write start last and stop
+   first, since an enabled drive mustn't wait for another driver.
 
         [device]                                  ethd_device_open
         driver = servo, ring                        servo  --.
         servo.map = svd48v.map                               +--> one ethd_device
         ring.port = /dev/ttyUSB0                    ring   --'
 
-   A driver may be a file of its own, a shared object (driver = servo, file:mine.so), so that what needs a vendor's SDK
-   or another licence stays outside of this library; see ethd_driver_plugin. */
+   A driver may be a shared object (driver = servo, file:mine.so), so that a vendor's SDK or another licence stays
+   outside of this library; see ethd_driver_plugin. */
 #ifndef ETHD_DRIVER_H
 #define ETHD_DRIVER_H
 
@@ -36,16 +36,16 @@
 
 ETHD_BEGIN_DECLS
 
-/* The interface's version, 4, in 4 bits, and in eights of bytes the size of each struct that a driver fills or gets, so
-   that none grows unnoticed and a refusal names it: ethd_sense in 7 bits, ethd_space_sense and ethd_limits in 6,
-   ethd_space_command, ethd_command and ethd_dynamics in 3 each. Never 0, which is a table whose abi wasn't set.
+/* The interface's version, 4, in 4 bits, and the size of each struct that a driver fills or gets, in units of 8 bytes,
+   so that none grows unnoticed and a refusal names it: ethd_sense in 7 bits, ethd_space_sense and ethd_limits in 6,
+   ethd_space_command, ethd_command and ethd_dynamics in 3 each. Never 0: that is a table whose abi wasn't set.
    (ethd_ability is part of ethd_space_sense.) */
 #define ETHD_DRIVER_ABI                                                                                            \
   ((uint32_t)(4u << 28 | sizeof(ethd_sense) / 8 << 21 | sizeof(ethd_space_sense) / 8 << 15 |                       \
               sizeof(ethd_limits) / 8 << 9 | sizeof(ethd_space_command) / 8 << 6 | sizeof(ethd_command) / 8 << 3 | \
               sizeof(ethd_dynamics) / 8))
 #define ETHD_DRIVERS_MAX 4         /* behind one device */
-#define ETHD_DRIVERS_TEXT_MAX 1024 /* bytes of their ids and files in a row, the closing 0 included */
+#define ETHD_DRIVERS_TEXT_MAX 1024 /* bytes of the list of their ids and files, the closing 0 included */
 #define ETHD_DRIVER_FILE "file:"   /* before a path, among drivers' ids */
 #define ETHD_UNITS_MAX 8           /* of blocking I/O, of all drivers together */
 #define ETHD_FIGURES_MAX 64        /* of all drivers together */
@@ -59,26 +59,26 @@ typedef struct ethd_setting {
   int line;
 } ethd_setting;
 
-/* What a device is opened with. */
+/* The arguments of a device's opening. */
 typedef struct ethd_device_def {
-  const ethd_setup *setup; /* the controller's: arm, ring, period; NULL for a device in space */
+  const ethd_setup *setup; /* of the controller: arm, ring, period; NULL for a device in space */
   const ethd_setting *settings;
   uint32_t setting_count;
   const char *folder;            /* relative paths in settings start here */
   const char *file;              /* of the settings, for messages; NULL: they don't come from a file */
-  int32_t is_virtual;            /* 1: instants come from a virtual clock, and service waits for nothing; 0: they are
-                         CLOCK_MONOTONIC's */
-  const ethd_space_setup *space; /* the controller's, for a device in space; NULL: it is in the plane */
+  int32_t is_virtual;            /* 1: instants come from a virtual clock, and service never waits; 0: they are those of
+                         CLOCK_MONOTONIC */
+  const ethd_space_setup *space; /* of the controller of a device in space; NULL: it is in the plane */
 } ethd_device_def;
 
-/* What `safe` leads to. */
+/* The state after `safe`. */
 typedef enum ethd_safe_state {
   ETHD_SAFE_NO_TORQUE = 0, /* nothing drives the joints */
-  ETHD_SAFE_NO_SPEED = 1,  /* the drives hold their places */
+  ETHD_SAFE_NO_SPEED = 1,  /* the drives hold their positions */
   ETHD_SAFE_BRAKES = 2     /* the brakes are closed */
 } ethd_safe_state;
 
-/* A number about the device for people: "feedback age p99", "s", 0.0012. */
+/* A number about the device for the user: "feedback age p99", "s", 0.0012. */
 typedef struct ethd_figure {
   const char *name, *unit;
   double value;
@@ -90,14 +90,14 @@ struct ethd_driver {
   const ethd_param *params; /* its settings that are numbers or one of several words; may be NULL */
   uint32_t param_count;
   const char *const *keys; /* its other settings, ended by NULL; may be NULL */
-  /* On failure message holds one line: file:line, the value found, the values allowed; if it is left empty, the status's
-     sentence takes its place. What open leaves in *device is closed, also after a failure, unless it is NULL. */
+  /* On failure message holds one line: file:line, the value found, the values allowed; if it stays empty, the status's
+     sentence takes its place. If open sets *device, it is closed, also after a failure. */
   ethd_status (*open)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
   ethd_status (*start)(void *device);
-  /* Adds what is new to *out, which is zero again after each step. ETHD_STATUS_STALE, or another positive status: this
-     driver gives the joint samples and has no newer one; the loop then holds the torque and steps when there is one, or
-     at once, with the last sample, if *out reports a fault that ends the torque. Negative: nothing is known of the
-     device any more. */
+  /* Adds new data to *out, which is zero again after each step. ETHD_STATUS_STALE, or another positive status: this
+     driver gives the joint samples and has no newer one. The loop then holds the torque until there is one. If *out
+     reports a fault that ends the torque, it steps at once, with the last sample. Negative: the device can't be read
+     any more. */
   ethd_status (*read)(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
   /* A command with `safe` set has zero torque. */
   ethd_status (*write)(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT;
@@ -110,31 +110,30 @@ struct ethd_driver {
   ethd_limits (*limits)(const void *device);
   /* Writes at most `max` figures about the time since the start and returns how many. [main], also while it runs. */
   uint32_t (*figures)(const void *device, ethd_figure *out, uint32_t max);
-  /* Returns the i-th sentence that people should know about the device, such as a risk that remains; NULL after the
-     last. [main] */
+  /* Returns the i-th sentence about the device for the user, such as a remaining risk; NULL after the last. [main] */
   const char *(*remark)(const void *device, uint32_t i);
-  /* Asks the device to clear a fault of its own, which its service then does; this enables nothing. [any] */
+  /* Asks the device to clear its own fault, which its service then does; this enables nothing. [any] */
   void (*clear)(void *device);
-  /* Tells the device the angles at which its joints are now: q, rad. With q NULL the device finds them as its settings
-     say, which may move them, slowly. Blocks; the device is stopped before and after. [main] */
+  /* Gives the device the present angles of its joints: q, rad. With q NULL the device finds them as its settings say,
+     which may move them, slowly. Blocks; the device is stopped before and after. [main] */
   ethd_status (*home)(void *device, const double q[2]);
-  /* Says in one line why the last start or home failed; "" if there is nothing to say. [main] */
+  /* Returns one line on why the last start or home failed; "" if no reason is known. [main] */
   const char *(*why)(const void *device);
-  /* Returns what moves the ring, as far as the driver knows; [arm] may say the rest. [main] */
+  /* Returns the arm's dynamics, as far as the driver knows them; [arm] may give the rest. [main] */
   ethd_dynamics (*dynamics)(const void *device);
-  /* As open, but for the device itself, which isn't touched: settings and files are read and checked. What it leaves in
-     *device is asked for limits, dynamics, figures and remarks, and closed. NULL: all of that is known once it is open.
-     [main] */
+  /* As open, but without access to the device: it reads and checks settings and files. If it sets *device, the program
+     asks that for limits, dynamics, figures and remarks, and closes it. NULL: these are known only once the device is
+     open. [main] */
   ethd_status (*prepare)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
-  /* Returns which joints the device measures: bit 0 joint 1, bit 1 joint 2. It is asked of what `prepare` left, before
-     anything is opened: a device with one measured joint alone is refused. NULL: not known, may be both. [main] */
+  /* Returns which joints the device measures: bit 0 joint 1, bit 1 joint 2. It gets the *device of `prepare`, before
+     anything is opened: a device that measures one joint alone is refused. NULL: not known, may be both. [main] */
   uint32_t (*joints)(const void *device);
-  /* For a device in space: as read and write. The sense's x and v are those that are commanded where commands are
-     velocities, and those that are measured where they are forces. What was done of a command otherwise than it was
-     asked for, such as one that was scaled to keep a joint's limit, the next sense has in `commanded`. */
+  /* As read and write, for a device in space. The sense's x and v are the commanded ones if commands are velocities,
+     and the measured ones if commands are forces. If the device changed a command, for example by scaling it to keep a
+     joint's limit, the next sense has the changed command in `commanded`. */
   ethd_status (*read_space)(void *device, int64_t now_ns, ethd_space_sense *out) ETHD_RT;
   ethd_status (*write_space)(void *device, int64_t now_ns, const ethd_space_command *command) ETHD_RT;
-  /* Returns what the device can do along n, a unit vector, as it stands now. NULL: not known. */
+  /* Returns the device's ability along n, a unit vector, in its present pose. NULL: not known. */
   ethd_ability (*able)(const void *device, const double n[3]) ETHD_RT;
   ethd_safe_state safe_is;
 };
@@ -142,25 +141,25 @@ struct ethd_driver {
 ETHD_API extern const ethd_driver ethd_driver_sim, ethd_driver_hello;
 ETHD_API extern const ethd_driver ethd_driver_arm; /* in space, simulated */
 ETHD_API extern const ethd_driver ethd_driver_servo;
-ETHD_API extern const ethd_driver ethd_driver_ring;    /* a proximity ring, beside a driver that moves */
-ETHD_API extern const ethd_driver ethd_driver_zones;   /* on-off light barriers, beside a driver that moves */
-ETHD_API extern const ethd_driver ethd_driver_nail;    /* a plate on the nail, beside a driver that moves */
-ETHD_API extern const ethd_driver ethd_driver_camera;  /* a motion capture, beside a driver that moves */
+ETHD_API extern const ethd_driver ethd_driver_ring;    /* a proximity ring, beside a driver of the motors */
+ETHD_API extern const ethd_driver ethd_driver_zones;   /* on-off light barriers, beside a driver of the motors */
+ETHD_API extern const ethd_driver ethd_driver_nail;    /* a plate on the nail, beside a driver of the motors */
+ETHD_API extern const ethd_driver ethd_driver_camera;  /* a motion capture, beside a driver of the motors */
 ETHD_API extern const ethd_driver ethd_driver_replay;  /* a recorded session, fed and compared */
-ETHD_API extern const ethd_driver ethd_driver_counter; /* encoders, beside a driver that moves */
-ETHD_API extern const ethd_driver ethd_driver_excite;  /* sines that show what an arm is, beside a driver that moves */
+ETHD_API extern const ethd_driver ethd_driver_counter; /* encoders, beside a driver of the motors */
+ETHD_API extern const ethd_driver ethd_driver_excite;  /* multisine excitation, beside a driver of the motors */
 
 /* All built-in drivers; the array ends with NULL. */
 ETHD_API extern const ethd_driver *const ethd_drivers[];
 
-/* What a shared object has to define to be a driver, as plugin.h has it for laws; the object needs no other symbol:
+/* The symbol that makes a shared object a driver, as plugin.h has one for laws; the object needs no other symbol:
 
         const ethd_driver ethd_driver_plugin = {.size = sizeof(ethd_driver), .abi = ETHD_DRIVER_ABI, .id = "mine", ...};
         cc -shared -fPIC mine.c -o mine.so $(pkg-config --cflags ethd-drivers)
 
    It stays loaded as long as the process lives. Like a law's file it is a program with your rights: its constructors
-   run before anything can be looked at, and what is checked is for mistakes, not against an attacker. One that was
-   compiled with an older header of the same ABI may be shorter, down to ETHD_DRIVER_MIN; a longer one is refused. */
+   run before any check, and the checks find mistakes; they don't stop an attacker. A table compiled with an older
+   header of the same ABI may be shorter, down to ETHD_DRIVER_MIN; a longer one is refused. */
 extern ETHD_API const ethd_driver ethd_driver_plugin;
 
 #define ETHD_DRIVER_MIN (offsetof(ethd_driver, limits) + sizeof(void (*)(void)))
@@ -169,33 +168,32 @@ extern ETHD_API const ethd_driver ethd_driver_plugin;
 
 typedef struct ethd_device ethd_device;
 
-/* Opens, for the plane or for space, the drivers that `ids` names ("sim", "servo, ring", "servo, file:mine.so"), in that order, out of `from` (ended
-   by NULL; NULL: ethd_drivers) and of files, whose paths start at def->folder, as one. With several, a setting's key
-   carries its driver's id ("ring.port"); with one it may. Before a driver is opened its
-   table is checked: size, ABI, id, brief, settings, and functions that need each other (write and safe, units and
-   service): ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_ARGUMENT, ETHD_E_TABLE. ETHD_E_UNKNOWN, ETHD_E_DUPLICATE: an id, or a
-   driver's key, with and without its id; ETHD_E_FILE, ETHD_E_LOAD, ETHD_E_SYMBOL: a file; ETHD_E_FULL: more than
-   ETHD_DRIVERS_MAX, or units; ETHD_E_ARGUMENT: one joint alone is measured, a driver has no part in such a device, or
-   none takes its commands in space; else what the driver's open returns.
-   message holds one line. On failure *out is NULL. [main] */
+/* Opens the drivers that `ids` names ("sim", "servo, ring", "servo, file:mine.so"), in that order, as one device of the
+   plane or of space. They come from `from` (ended by NULL; NULL: ethd_drivers) and from files, whose paths start at
+   def->folder. With several, a setting's key carries its driver's id ("ring.port"); with one it may. Before a driver is
+   opened its table is checked: size, ABI, id, brief, settings, and functions that need each other (write and safe,
+   units and service): ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_ARGUMENT, ETHD_E_TABLE. ETHD_E_UNKNOWN, ETHD_E_DUPLICATE: an id,
+   or a driver's key, with and without its id; ETHD_E_FILE, ETHD_E_LOAD, ETHD_E_SYMBOL: a file; ETHD_E_FULL: more than
+   ETHD_DRIVERS_MAX, or units; ETHD_E_ARGUMENT: only one joint is measured, a driver doesn't work in such a device, or
+   none takes commands in space; else the status of the driver's open. message holds one line. On failure *out is NULL.
+   [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from,
                                                       const ethd_device_def *def, ethd_device **out,
                                                       char message[ETHD_MESSAGE_MAX]);
 
-/* The same by the drivers' `prepare`, which touches nothing. Of a driver without it only the name is checked, and its
-   remark says so. *out may be asked for limits, dynamics, figures and remarks, and closed. Fails as
+/* The same by the drivers' `prepare`, without access to the device. For a driver without `prepare` only the name is
+   checked, and its remark says so. *out gives limits, dynamics, figures and remarks, and must be closed. Fails as
    ethd_device_open does (ETHD_E_...). [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_prepare(const char *ids, const ethd_device_def *def, ethd_device **out,
                                                          char message[ETHD_MESSAGE_MAX]);
 
-/* Closes the drivers and frees the device; NULL: does nothing. In a child that the process made by fork it frees
-   without calling the drivers, since they stay the parent's; start, stop, home and service refuse there
-   (ETHD_E_DEVICE). [main] */
+/* Closes the drivers and frees the device; NULL: does nothing. In a forked child it frees the memory without calling
+   the drivers, which belong to the parent; start, stop, home and service refuse there (ETHD_E_DEVICE). [main] */
 ETHD_API void ethd_device_close(ethd_device *device);
 
-/* Do what the functions of ethd_driver of that name do, with all drivers of the device. A start that fails stops what
-   had started; a driver whose start gives a positive status is stopped, too, and the start fails with ETHD_E_DEVICE. A
-   driver without stop is made safe. q: rad. home: ETHD_E_ARGUMENT where no driver has one. [main] */
+/* Call the functions of that name of all drivers of the device. A start that fails stops the drivers that had started;
+   a driver whose start gives a positive status is stopped, too, and the start fails with ETHD_E_DEVICE. A driver
+   without stop is made safe. q: rad. home: ETHD_E_ARGUMENT where no driver has one. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_start(ethd_device *device);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_stop(ethd_device *device);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_home(ethd_device *device, const double q[2]);
@@ -212,37 +210,37 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_read_space(ethd_device *device,
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_write_space(ethd_device *device, int64_t now_ns,
                                                              const ethd_space_command *command) ETHD_RT;
 
-/* Returns what the device can do along n, a unit vector of no unit, as the first of its drivers says that knows it.
+/* Returns the device's ability along n, a unit vector of no unit, from the first of its drivers that knows it.
    [any, rt-safe] */
 ETHD_API ethd_ability ethd_device_able(const ethd_device *device, const double n[3]) ETHD_RT;
 
 /* Returns 1 for a device in space, 0 for one in the plane. [any, rt-safe] */
 ETHD_API int32_t ethd_device_in_space(const ethd_device *device) ETHD_RT;
 
-/* Returns what `safe` leads to: of the drivers that take commands, the first one's. [any, rt-safe] */
+/* Returns the state after `safe`, from the first driver that takes commands. [any, rt-safe] */
 ETHD_API ethd_safe_state ethd_device_safe_is(const ethd_device *device) ETHD_RT;
 
 /* Makes all drivers safe; asks all of them to clear their own faults. [any] */
 ETHD_API void ethd_device_safe(ethd_device *device) ETHD_RT;
 ETHD_API void ethd_device_clear(ethd_device *device);
 
-/* Returns how many units of blocking I/O the drivers have together; does one piece of I/O of one of them. Each unit has
-   one caller. ETHD_E_ARGUMENT: no such unit; else what the driver returns. [any] */
+/* ethd_device_units returns how many units of blocking I/O the drivers have together; _service does one piece of I/O of
+   a unit. Each unit has one caller. ETHD_E_ARGUMENT: no such unit; else the driver's status. [any] */
 ETHD_API uint32_t ethd_device_units(const ethd_device *device);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_service(ethd_device *device, uint32_t unit, int64_t now_ns);
 
-/* Return the narrowest of all limits; the dynamics, of which later drivers add what earlier ones don't know; figures and
-   remarks of all; why of the first driver that has something to say, or "". [main] */
+/* Return the narrowest of all limits; the dynamics, in which later drivers fill the unknown numbers of earlier ones;
+   figures and remarks of all; `why` of the first driver that gives a reason, or "". [main] */
 ETHD_API ethd_limits ethd_device_limits(const ethd_device *device);
 ETHD_API ethd_dynamics ethd_device_dynamics(const ethd_device *device);
 ETHD_API uint32_t ethd_device_figures(const ethd_device *device, ethd_figure *out, uint32_t max);
 ETHD_API const char *ethd_device_remark(const ethd_device *device, uint32_t i);
 ETHD_API const char *ethd_device_why(const ethd_device *device);
 
-/* Reads a driver's settings, for its open: values[i] of its params and texts[i] of its keys, which stay as they are
-   where the configuration says nothing. A key that the table doesn't have, or a value that it doesn't allow, is refused
-   with file and line (ETHD_E_UNKNOWN, ETHD_E_RANGE). Values are in the unit of their row. values, texts: NULL where the
-   table has none. [main] */
+/* Reads a driver's settings, for its open: values[i] of its params and texts[i] of its keys. Those that the
+   configuration doesn't have stay as they are. A key that the table doesn't have, or a value that it doesn't allow, is
+   refused with file and line (ETHD_E_UNKNOWN, ETHD_E_RANGE). Values are in the unit of their row. values, texts: NULL
+   where the table has none. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_settings_read(const ethd_driver *driver, const ethd_device_def *def,
                                                         double *values, const ethd_setting **texts,
                                                         char message[ETHD_MESSAGE_MAX]);

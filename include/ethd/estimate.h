@@ -14,7 +14,7 @@ ETHD_BEGIN_DECLS
 
 /* Joint speed from encoder positions, one estimator per joint.
 
-   Less noise costs more lag, and both bound the gains that stay stable: ethd-check prints these bounds. */
+   Less noise costs more lag, and both limit the stable gains: ethd-check prints these bounds. */
 
 typedef enum ethd_velocity_method {
   ETHD_VELOCITY_LOWPASS = 0, /* first-order low-pass of the difference: qd += a (raw - qd) with
@@ -35,7 +35,7 @@ ETHD_API extern const ethd_method ethd_velocity_methods[ETHD_VELOCITY_COUNT];
 
 #define ETHD_VELOCITY_WINDOW_MAX 32 /* samples, the newest included */
 
-/* A checked estimator with its coefficients worked out. Plain value. */
+/* A checked estimator with its coefficients. Plain value. */
 typedef struct ethd_velocity {
   ethd_velocity_method method;
   uint32_t window; /* lsq, foaw: samples; else 0 */
@@ -53,7 +53,7 @@ typedef struct ethd_velocity_state {
   uint32_t count, head;                /* samples held, the newest's index */
 } ethd_velocity_state;
 
-/* Checks p against the method's table, and the period (1e-6 to 1 s), and works out the coefficients: ETHD_E_RANGE,
+/* Checks p against the method's table, and the period (1e-6 to 1 s), and computes the coefficients: ETHD_E_RANGE,
    ETHD_E_NOT_FINITE or, for the method, ETHD_E_UNKNOWN, with the name; out is untouched then. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_velocity_prepare(ethd_velocity_method method, const double *p, double period,
                                                            ethd_velocity *out, ethd_error *error);
@@ -65,7 +65,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_velocity_prepare(ethd_velocity_method 
 ETHD_API double ethd_velocity_step(const ethd_velocity *velocity, ethd_velocity_state *state, double q, double torque,
                                    double dt) ETHD_RT;
 
-/* Returns by how much the speed lags under slow constant acceleration (kalman: all of it unknown), s:
+/* Returns the lag of the speed under a small constant acceleration (kalman: unknown to the filter), s:
    difference T/2, lowpass T/2 + T (1 - a) / a, lsq and, at its longest, foaw (window - 1) T/2. [any] */
 ETHD_API double ethd_velocity_lag(const ethd_velocity *velocity);
 
@@ -105,7 +105,7 @@ typedef struct ethd_fit {
 typedef struct ethd_finger {
   ethd_vec centre; /* relative to the ring's centre, m */
   double radius;   /* rms of |p - c| over the rays used, m: kasa's R */
-  double residual; /* rms of (|p - c|^2 - radius^2) / (2 radius), which is |p - c| - radius nearly, m */
+  double residual; /* rms of (|p - c|^2 - radius^2) / (2 radius), approximately |p - c| - radius, m */
   uint32_t used;   /* bit k: ray k was used */
   uint32_t reserved;
 } ethd_finger;
@@ -116,29 +116,28 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_prepare(ethd_fit_method method, co
                                                       double finger_radius, ethd_fit *out, ethd_error *error);
 
 /* Fits the finger to one frame of rays, m. ETHD_STATUS_STALE: the rays that count don't determine a centre within the
-   ring, since there are under 3 (robust: 2) or, for kasa and centroid, they lie on one line; out is then untouched.
-   [rt] */
+   ring: there are under 3 (robust: 2) or, for kasa and centroid, they lie on one line; out is then untouched. [rt] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS],
                                                    ethd_finger *out) ETHD_RT;
 
-/* Gives the distances, m, that a finger of this radius, m, and centre, m from the ring's, would have, the fit's
-   inverse; NaN where a ray meets the ring's centre first, or nothing. [any, rt-safe] */
+/* Gives the distances, m, to a finger of this radius, m, and centre, m from the ring's (the fit's inverse); NaN where a
+   ray reaches the ring's centre first, or meets nothing. [any, rt-safe] */
 ETHD_API void ethd_fit_rays(double ring_radius, double finger_radius, ethd_vec centre, double r[ETHD_RAYS]) ETHD_RT;
 
 /* ---- finger: position and velocity at each tick ---- */
 
-/* The finger at 1 kHz from readings at 300 Hz: position and velocity per axis.
+/* The finger at each tick (1 kHz) from readings at 300 Hz: position and velocity per axis.
 
    Every tick predicts; a reading corrects at the tick at which it has arrived.
 
-     compensation = stamp   the state is that of the last reading's sample instant, `latency` before its
-                            stamp; the next reading moves it on to its own instant; the output is
-                            extrapolated from the state to now. A lost frame only makes that interval longer
-     compensation = none    the state is that of now and moves on with every tick; a reading counts as if
-                            it had been taken now
+     compensation = stamp   the state belongs to the last reading's sample instant, `latency` before its stamp; the
+                            next reading moves it on to its own instant; the output is extrapolated from the state to
+                            now. A lost frame only makes that interval longer
+     compensation = none    the state belongs to now and moves on with every tick; a reading counts as if it had been
+                            taken now
 
-   All axes have the same noise, so they share the covariance. The plane has two axes and space three, in functions of
-   their own (..._start3, _update3, _output3); a state is used with one kind of them. */
+   All axes have the same noise, so they share the covariance. The plane has two axes, space has three and its own
+   functions (..._start3, _update3, _output3); a state works with one kind of them only. */
 
 typedef enum ethd_filter_method {
   ETHD_FILTER_CA = 0,     /* Kalman, constant acceleration: Q = jerk^2 g g^T, g = (T^3/6, T^2/2, T) for
@@ -152,8 +151,8 @@ typedef enum ethd_filter_method {
 
 ETHD_API extern const ethd_method ethd_filter_methods[ETHD_FILTER_COUNT];
 
-/* Which of the ring's positions a relative reading is added to ([finger_filter] reference): the one at the sample's
-   instant, or that of the tick. */
+/* The ring's position to which a relative reading is added ([finger_filter] reference): that at the sample's instant,
+   or that of the tick. */
 enum { ETHD_REFERENCE_SAMPLE = 0, ETHD_REFERENCE_TICK = 1 };
 
 /* [finger_filter] compensation. */
@@ -177,7 +176,7 @@ typedef struct ethd_filter_state {
   uint32_t started;
   uint32_t used, late, gated, restarts; /* readings counted */
   uint32_t gated_in_a_row;
-  uint32_t acquired; /* readings in space used since the start, which counts as one; at most ETHD_FILTER_ACQUIRED */
+  uint32_t acquired; /* readings in space used since the start, with that of the start; up to ETHD_FILTER_ACQUIRED */
   uint32_t reserved;
 } ethd_filter_state;
 
@@ -197,26 +196,26 @@ ETHD_API void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *
 
 /* Takes a reading of the finger's position, m in R_0, stamped `age` s ago. A filter that isn't started starts there, at
    rest, with standard deviations of 1 m/s and 10 m/s^2. ETHD_STATUS_STALE: the reading is counted but not used, because
-   it is not newer than the last used one (late), not finite, or over `gate` standard deviations from where it was
-   expected, by the innovation of both axes together against sqrt(P_xx + noise^2) (gated). The ETHD_FILTER_GATED_MAX-th
-   gated reading in a row starts the filter again, since then the filter is wrong, not the readings. [rt] */
+   it is not newer than the last used one (late), not finite, or over `gate` standard deviations from the prediction:
+   the length of the innovation in both axes against sqrt(P_xx + noise^2) (gated). The ETHD_FILTER_GATED_MAX-th gated
+   reading in a row starts the filter again, since then the filter is wrong, not the readings. [rt] */
 ETHD_API ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x,
                                         double age) ETHD_RT;
 
-/* Gives where the finger is now, m, and its velocity, m/s, in R_0. [rt] */
+/* Gives the finger's present position, m, and velocity, m/s, in R_0. [rt] */
 ETHD_API void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x,
                                  ethd_vec *v) ETHD_RT;
 
 /* ---- the same in space ---- */
 
-/* The three axes are those of any frame that doesn't turn, for example a headset's. */
+/* The three axes are those of any frame that doesn't rotate, for example a headset's. */
 
 #define ETHD_FILTER_NOISE_MAX 0.05   /* m: largest sd that a reading may state */
 #define ETHD_FILTER_V_NOISE_MAX 10.0 /* m/s */
 #define ETHD_FILTER_LOSS 0.1         /* s between two used readings after which the finger counts as lost */
 #define ETHD_FILTER_ACQUIRED 8       /* readings used after which the filter has acquired the finger */
 
-/* A reading of the finger, for example a headset's. The Kalman filters use noise and velocity, the others don't. */
+/* A reading of the finger, for example from a headset. The Kalman filters use noise and velocity, the others don't. */
 typedef struct ethd_filter_reading {
   ethd_vec3 x, v;    /* m, m/s */
   double age;        /* s from its stamp to now */
@@ -231,21 +230,21 @@ ETHD_API void ethd_filter_start3(const ethd_filter *filter, ethd_filter_state *s
 /* Takes a reading as ethd_filter_update does, with these differences:
 
    - A measured velocity corrects too, after the position, and is gated against sqrt(P_vv + v_noise^2). If either is
-     gated, the reading isn't used. A start from such a reading has its velocity.
+     gated, the reading isn't used. A start from such a reading takes over its velocity.
    - A filter whose last used reading was taken over ETHD_FILTER_LOSS before this one starts again (`restarts`).
    - After every start the filter acquires the finger: the reading that follows n used ones has the gate widened by
-     1 + 4 / n^(3/2), until n = ETHD_FILTER_ACQUIRED: 5, 2.4, 1.8, 1.5, 1.4, 1.3, 1.2. A tracker that is so many times
-     noisier than it says loses no more readings than `gate` stands for: 1 in 900 at 4, as P(chi^2 > 16) with three
-     degrees of freedom. This is how much wider a test has to be that knows the noise from n readings only,
-     sqrt(F(3, 3 n) / F(3, inf)) at this probability, or up to 17 % more. While `acquired` < ETHD_FILTER_ACQUIRED, a
-     gated reading is no sign of a broken tracker.
+     1 + 4 / n^(3/2), until n = ETHD_FILTER_ACQUIRED: 5, 2.4, 1.8, 1.5, 1.4, 1.3, 1.2. A tracker that is noisier than it
+     states by this factor loses no more readings than `gate` implies: 1 in 900 at 4, as P(chi^2 > 16) with three
+     degrees of freedom. A test that knows the noise from n readings only must be wider by this factor: sqrt(F(3, 3 n) /
+     F(3, inf)) at this probability, or up to 17 % more. While `acquired` < ETHD_FILTER_ACQUIRED, a gated reading is no
+     sign of a broken tracker.
 
    ETHD_STATUS_STALE: late or gated, as in the plane; a noise that isn't finite or isn't within its range counts as
    gated, too. [rt] */
 ETHD_API ethd_status ethd_filter_update3(const ethd_filter *filter, ethd_filter_state *state,
                                          const ethd_filter_reading *reading) ETHD_RT;
 
-/* Gives where the finger is now, m, and its velocity, m/s. [rt] */
+/* Gives the finger's present position, m, and velocity, m/s. [rt] */
 ETHD_API void ethd_filter_output3(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec3 *x,
                                   ethd_vec3 *v) ETHD_RT;
 

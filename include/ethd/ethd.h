@@ -1,4 +1,4 @@
-/* libethd: control of encounter-type haptic displays. Everything the library offers. Links from libethd. */
+/* libethd: control of encounter-type haptic displays. Includes all headers of the library. Links from libethd. */
 #ifndef ETHD_ETHD_H
 #define ETHD_ETHD_H
 

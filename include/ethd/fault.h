@@ -1,27 +1,26 @@
-/* The fault table: faults, the time until each is noticed, the reactions. Counters, events, recordings,
-   the summary of a run and the manual's page come from these rows. Links from libethd.
+/* The fault table: faults, the time until each is noticed, the reactions. Counters, events, recordings, the summary of
+   a run and the manual's page are made from these rows. Links from libethd.
 
    Reactions, from mild to hard:
-     COUNTED  go on; it is counted
-     DEGRADE  go on with less: without a sensor, by prediction, with less torque
+     COUNTED  go on; the fault is counted
+     DEGRADE  go on with restrictions: without a sensor, by prediction, with less torque
      STOP     brake the ring until it stands still, or remove its torque (ethd/guard.h); then do as ZERO does
      ZERO     no torque, the device is disabled; latched until acknowledged
    Zero torque is a safe state because the arm is counterweighted. A row has two reactions. The first is due as soon as
-   the row is seen, the second when it has become grave: often, long or twice, as its sentence says. A row that has only
-   one reaction names it twice. REFUSE rows are met before anything moves; in a sense they are only counted.
+   the row is seen, the second when it is grave: often, long or twice, as its sentence says. A row with only one
+   reaction names it twice. REFUSE rows occur before anything moves; in a sense they are only counted.
 
    Device and loop report a row in the sense: they set bit i of `faults` for row i in every tick in which it lasts, and
-   bit i of `grave` while the second reaction is due; bit i of `faults` need not be set then. The ticks of one
-   occurrence follow each other without a gap; each occurrence is counted and reported by one event. Rows that the
-   controller itself sees are treated in the same way.
+   bit i of `grave` while the second reaction is due; bit i of `faults` need not be set then. One occurrence is a run of
+   ticks without a gap; it is counted once and reported by one event. The controller's own rows work in the same way.
 
         faults  _____######______##____    two occurrences, two events
         grave   ________###___________     the second reaction is due: one more event
 
-   The controller does what the rows say. STOP and ZERO latch: the first such row stays in trace.fault until it is
-   acknowledged, whatever else comes. If one tick has several, ZERO comes before STOP, then the lowest number counts. A
-   ZERO also ends a STOP that is still damping. An acknowledgement counts once no row has called for STOP or ZERO for
-   limits.clean_time. Replaying the senses replays the faults. */
+   The controller carries out the reactions. STOP and ZERO latch: the first such row stays in trace.fault until it is
+   acknowledged; later rows don't replace it. If one tick has several, ZERO comes before STOP, then the lowest number
+   counts. A ZERO also ends a STOP that is still braking. An acknowledgement counts once no row has called for STOP or
+   ZERO for limits.clean_time. Replaying the senses replays the faults. */
 #ifndef ETHD_FAULT_H
 #define ETHD_FAULT_H
 
@@ -41,12 +40,12 @@ typedef enum ethd_reaction {
 } ethd_reaction;
 
 /* X(row, NAME, first reaction, second, bound, sentence); bound: how soon it is noticed, in words; "x every": its
-   register is read in each `every`-th exchange, as the servo's map says. SPEED looks at the speed that is estimated,
-   which lags behind the true one by ethd_velocity_lag: 1.3 ms by the low-pass that is the default, half a tick by
-   differences. REPLY_MISSING counts from when the map's `response` is over, and so does REPLY_BAD where libmodbus waits
-   for the rest of noise that is shorter than an answer (drivers/servo/README.md). Event values: FINITE kind of law; LAW
-   100 kind - status; BUDGET ns; SPEED m/s; INPUT which, ETHD_HAVE_* or 0 for q; else 1 where the second reaction is
-   due, 0 where not. TORQUE and TORQUE_RATE are reported only when they last: over 0.1 s, over 20 ticks. */
+   register is read in each `every`-th exchange, as the servo's map says. SPEED checks the estimated speed, which lags
+   behind the true one by ethd_velocity_lag: 1.3 ms with the default low-pass, half a tick with differences.
+   REPLY_MISSING counts from when the map's `response` is over, and so does REPLY_BAD where libmodbus waits for the rest
+   of noise that is shorter than an answer (drivers/servo/README.md). Event values: FINITE kind of law; LAW 100 kind -
+   status; BUDGET ns; SPEED m/s; INPUT the bad field: ETHD_HAVE_*, or 0 for q; else 1 if the second reaction is due, 0
+   if not. TORQUE and TORQUE_RATE are reported only when they last: over 0.1 s, over 20 ticks. */
 #define ETHD_FAULTS(X)                                                                                    \
   X(1, OVERRUN, COUNTED, COUNTED, "1 tick", "a tick was late")                                            \
   X(2, OVERRUNS, STOP, STOP, "5 ms", "ticks are late too often, or one by more than 5 ms")                \
@@ -102,7 +101,7 @@ typedef enum ethd_fault {
 /* Returns a row's sentence, "no fault" for 0. [any, rt-safe] */
 ETHD_API const char *ethd_fault_sentence(ethd_fault fault) ETHD_RT;
 
-/* Returns in words how soon a row is noticed. [any, rt-safe] */
+/* Returns as text how soon a row is noticed. [any, rt-safe] */
 ETHD_API const char *ethd_fault_bound(ethd_fault fault) ETHD_RT;
 
 /* Returns a row's first reaction, or with `grave` its second; ETHD_REACTION_NONE outside the table. [any, rt-safe] */

@@ -1,27 +1,26 @@
-/* The guard: the last to change a torque before the device gets it. Links from libethd.
+/* The guard: the last stage that changes a torque before the device gets it. Links from libethd.
 
    How it stops a ring. With p = M dq the links' momentum and
 
      reaction = t_d + T + lag     from a joint sample to the end of its torque's hold; t_d: dynamics.delay,
                                   T: period, lag: of the estimated joint speeds, 0 where they are measured
 
-   the stop commands the torque -p / (e reaction), never more than the torque limits leave. A mass m under the damping
+   the stop commands the torque -p / (e reaction), within the torque limits. A mass m under the damping
    b = m / (e reaction) that acts `reaction` late slows down without overshoot: m v'(t) = -b v(t - r) doesn't
    oscillate up to b r / m = 1/e, and is stable up to pi/2, 4.3 times as much (Hale and Verduyn Lunel, Introduction to
-   Functional Differential Equations, 1993, 5.2). ethd-check gives the margin of the sampled loop.
+   Functional Differential Equations, 1993, 5.2). ethd-check prints the margin of the sampled loop.
 
-   The stop first sees whether the device brakes. In units of speed, what it has commanded may exceed 1.2 times the fall
-   that it sees by a tenth of the speed at its start. So a device with a reversed encoder, or with more delay than
-   stated, becomes faster by a tenth at most, and by three tenths if its mass is a third of the stated mass. Until t_d +
-   lag have passed nothing that the stop commands can show, so the fall counts from the highest speed until then. A
-   torque counts as held for as long as the last one was. A fall by friction counts, too: with a reversed encoder, a
-   mass stated three times too large and a friction that stops the ring by itself, the ring can reach twice the speed at
-   the start.
+   The stop checks whether the device brakes. The commanded change of speed may exceed 1.2 times the measured fall by a
+   tenth of the speed at the start of the stop. So a device with a reversed encoder, or with more delay than stated,
+   becomes faster by a tenth at most, and by three tenths if its mass is a third of the stated mass. The stop has no
+   measurable effect until t_d + lag have passed, so the fall counts from the highest speed until then. A torque counts
+   as held for as long as the last one was. A fall by friction counts, too: with a reversed encoder, a mass stated three
+   times too large and a friction that stops the ring by itself, the ring can reach twice the speed at the start.
 
-   A stop ends with zero torque: when the links are slower than 20 mm/s (the paper's v_th, eq. 11), when it may command
-   next to nothing for longer than reaction + T because the speed doesn't fall, and at limits.stop_time. An unknown mass
-   is assumed as ETHD_MASS_ASSUMED; a heavier device isn't braked: its torque is removed. An unknown delay is assumed as
-   limits.gap, without one as ETHD_DELAY_ASSUMED.
+   A stop ends with zero torque: when the links are slower than 20 mm/s (the paper's v_th, eq. 11), when for longer than
+   reaction + T it may command almost nothing because the speed doesn't fall, and at limits.stop_time. An unknown mass
+   is assumed to be ETHD_MASS_ASSUMED; a heavier device isn't braked: its torque is removed. An unknown delay is assumed
+   to be limits.gap or, without one, ETHD_DELAY_ASSUMED.
 
    The wall of limits.margin has the gains with which a mass under a force that is `2 reaction` late comes to rest
    quickest without overshoot, a triple root of s^2 + (B s + K) e^(-2 r s) = 0:
@@ -37,8 +36,8 @@
 
 ETHD_BEGIN_DECLS
 
-/* INFINITY, or -INFINITY as a lower bound, means that there is no limit; for margin and clean_time 0 does. Elsewhere 0
-   is a limit of 0. A limit that isn't set costs nothing. */
+/* INFINITY, or -INFINITY as a lower bound, means that there is no limit; for margin and clean_time 0 means so.
+   Elsewhere 0 is a limit of 0. A limit that isn't set costs no time. */
 typedef struct ethd_limits {
   uint32_t size;         /* sizeof(ethd_limits) as compiled, set by ethd_limits_none */
   int32_t latch;         /* 1: faults latch until cleared; 0: each tick is judged alone (replay) */
@@ -49,13 +48,13 @@ typedef struct ethd_limits {
   double reach[2];       /* m: least and most distance of the ring's centre from the base */
   double joints[4];      /* rad: q1_min, q1_max, q2_min, q2_max */
   double margin;         /* m: within this of the bounds of workspace and reach a wall pushes back, >= 0 */
-  double energy;         /* J that a contact may give away within half a second before damping is added, > 0 */
-  double nominal_torque; /* Nm: what each motor can give continuously, > 0; limits nothing without heat_time */
+  double energy;         /* J: energy that a contact may release within half a second before damping is added, > 0 */
+  double nominal_torque; /* Nm: continuous torque of each motor, > 0; limits nothing without heat_time */
   double heat_time;      /* s: time constant of a motor's heat, > 0; shorter is stricter */
   double step_time;      /* s: time budget of one step, > 0 */
   double gap;            /* s: longest time between two steps, and the most that a clock may jump, > 0 */
   double finger_age;     /* s: when the finger's reading is older, tracking fades out */
-  double finger_lost;    /* s: when it is older than this, the ring is stopped; without either no reading is judged */
+  double finger_lost;    /* s: when it is older, the ring is stopped; without both limits the age isn't checked */
   double clean_time;     /* s without a reason to stop before an acknowledgement counts, >= 0, finite;
                           longer is stricter */
   double stop_time;      /* s: a stop that lasts longer ends without torque, > 0; INFINITY: ETHD_STOP_TIME */
@@ -85,8 +84,8 @@ static inline double *ethd_limit_of(ethd_limits *limits, const ethd_limit *row) 
   return (double *)(void *)((char *)limits + row->offset);
 }
 
-/* Fill `out`, of `size` bytes, with no limits, and make `limits` the stricter of two, for the functions below. What
-   another version's headers have made becomes zero, or keeps the other `size`: ethd_limits_check refuses it. [any] */
+/* Fill `out`, of `size` bytes, with no limits, and make `limits` the stricter of two, for the functions below. Limits
+   made with another version's headers become zero, or keep their `size`: ethd_limits_check refuses them. [any] */
 ETHD_API void ethd_limits_fill(ethd_limits *out, uint32_t size);
 ETHD_API void ethd_limits_narrow(ethd_limits *limits, const ethd_limits *other);
 
@@ -104,7 +103,7 @@ static inline ethd_limits ethd_limits_torque(double torque) {
   return limits;
 }
 
-/* Returns what a driver of a real device begins with: gap 5 ms, clean_time 1 s, finger_age 10 ms, finger_lost 30 ms,
+/* Returns initial limits for a driver of a real device: gap 5 ms, clean_time 1 s, finger_age 10 ms, finger_lost 30 ms,
    and no other limit. [any] */
 static inline ethd_limits ethd_limits_device(void) {
   ethd_limits limits = ethd_limits_none();
@@ -115,8 +114,8 @@ static inline ethd_limits ethd_limits_device(void) {
   return limits;
 }
 
-/* Checks each number against its row: ETHD_E_RANGE or ETHD_E_NOT_FINITE with the limit's name; ETHD_E_SIZE where this
-   version's ethd_limits_none didn't make them. [main] */
+/* Checks each number against its row: ETHD_E_RANGE or ETHD_E_NOT_FINITE with the limit's name; ETHD_E_SIZE if they
+   weren't made by this version's ethd_limits_none. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error);
 
 /* Returns the stricter of two, limit by limit; it latches if either does. [any] */
@@ -126,7 +125,7 @@ static inline ethd_limits ethd_limits_narrower(const ethd_limits *a, const ethd_
   return limits;
 }
 
-/* What the guard did, as bits; the counters count ticks. */
+/* The guard's actions, as bits; the counters count ticks. */
 enum {
   ETHD_GUARD_FINITE = 1,     /* torque not finite: zero torque in this tick; the controller latches it */
   ETHD_GUARD_TORQUE = 2,     /* clamped */
@@ -135,19 +134,19 @@ enum {
   ETHD_GUARD_WORKSPACE = 16, /* ring out of its workspace: stopped as for speed */
   ETHD_GUARD_FAULT = 32,     /* a row of the fault table stops the ring, as for speed */
   ETHD_GUARD_MARGIN = 64,    /* the workspace's wall pushed */
-  ETHD_GUARD_HEAT = 128,     /* clamped to what a hot motor may have */
-  ETHD_GUARD_STEEP = 256     /* the torque asked for changed faster than the rate for ETHD_STEEP_MAX ticks in a row,
+  ETHD_GUARD_HEAT = 128,     /* clamped to the limit of a hot motor */
+  ETHD_GUARD_STEEP = 256     /* the requested torque changed faster than the rate for ETHD_STEEP_MAX ticks in a row,
                                 and limits latch: stopped as for speed */
 };
 #define ETHD_GUARD_COUNT 9
 #define ETHD_STEEP_MAX 20
 
-/* How a stop goes. */
+/* The progress of a stop. */
 typedef struct ethd_guard_stop {
-  int64_t begun;   /* 1: the members below are of a stop that goes on */
+  int64_t begun;   /* 1: a stop goes on, which the members below describe */
   double start;    /* speed of the links when it began, m/s */
   double highest;  /* highest speed until its first torque can show, m/s */
-  double given;    /* change of speed that it has commanded so far, m/s */
+  double given;    /* change of speed commanded so far, m/s */
   double time;     /* s since it began */
   double mark;     /* `given` when it last rose by a hundredth of `start`, m/s */
   double helpless; /* s since then */
@@ -155,20 +154,20 @@ typedef struct ethd_guard_stop {
 
 typedef struct ethd_guard_state {
   double last[2];  /* torque of the last tick, Nm */
-  double asked[2]; /* what it was before it was limited, Nm */
-  double heat[2];  /* of each motor; 1 is what its nominal torque leads to */
+  double asked[2]; /* the same before the limits, Nm */
+  double heat[2];  /* of each motor; 1: the final value under its nominal torque */
   double cut;      /* s for which the torque has been clamped without a break */
   int64_t steep;   /* ticks in a row with too steep a torque */
   ethd_guard_stop stop;
   uint64_t counts[ETHD_GUARD_COUNT];
-  int32_t stopping; /* ETHD_GUARD_* bits of what stops the ring, 0: nothing does; callers may set it */
+  int32_t stopping; /* ETHD_GUARD_* bits of the reasons to stop the ring, 0: none; callers may set it */
   int32_t stopped;  /* 1: the ring stands still or the stop has failed, so the torque is zero until this is cleared */
 } ethd_guard_state;
 
 #define ETHD_MASS_ASSUMED 0.06   /* kg: of a device whose mass isn't known */
 #define ETHD_DELAY_ASSUMED 0.020 /* s: of a device whose delay isn't known, without limits.gap */
 
-/* The device as the guard brakes it. */
+/* The guard's model of the device. */
 typedef struct ethd_guard_device {
   double link[2];    /* m */
   double mass;       /* kg: the lighter of the two at the ring */
@@ -181,8 +180,8 @@ typedef struct ethd_guard_device {
   double damping;    /* Ns/m, of the margin's wall */
 } ethd_guard_device;
 
-/* Returns the device of a setup's numbers; lag: s, see ethd_velocity_lag. What the dynamics don't know is assumed as
-   said above. [any] */
+/* Returns the device of a setup's numbers; lag: s, see ethd_velocity_lag. Numbers that the dynamics don't know are
+   assumed as said above. [any] */
 ETHD_API ethd_guard_device ethd_guard_device_of(const ethd_arm *arm, const ethd_dynamics *dynamics, double gap,
                                                 double period, double lag);
 
@@ -190,15 +189,15 @@ ETHD_API ethd_guard_device ethd_guard_device_of(const ethd_arm *arm, const ethd_
    [any, rt-safe] */
 ETHD_API double ethd_guard_damping(const ethd_guard_device *device, double mass, bool estimated) ETHD_RT;
 
-/* Returns how long, s, limits.torque takes to brake the device from limits.speed, m v / F, which a stop_time can't be
-   shorter than; 0 without a limit of the speed, and where no torque is allowed. [any] */
+/* Returns the time, s, in which limits.torque brakes the device from limits.speed, m v / F: the least possible
+   stop_time. 0 without a limit of the speed, and if no torque is allowed. [any] */
 ETHD_API double ethd_guard_brake_time(const ethd_guard_device *device, const ethd_limits *limits);
 
-/* Returns the stop_time, s, with which a stop from limits.speed ends at rest, with a quarter to spare: brake time,
-   reaction and decay; 0 as above. [any] */
+/* Returns a stop_time, s, in which a stop from limits.speed ends at rest: brake time, reaction and decay, and a quarter
+   more; 0 as above. [any] */
 ETHD_API double ethd_guard_stop_time(const ethd_guard_device *device, const ethd_limits *limits);
 
-/* How the ring moves at a tick. */
+/* The ring's motion at a tick. */
 typedef struct ethd_guard_motion {
   const ethd_pose *pose;
   ethd_vec v;     /* m/s, of the ring in R_0 */
@@ -211,32 +210,32 @@ typedef struct ethd_guard_motion {
    nominal_torque is a limit. [rt] */
 ETHD_API double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *state, double dt) ETHD_RT;
 
-/* Limits `torque`, Nm of each joint, in place and returns the bits of what it did. In this order: if the ring is being
+/* Limits `torque`, Nm of each joint, in place and returns the bits of its actions. In this order: if the ring is being
    stopped (speed, workspace, a fault), the stop's torque replaces it, else the margin's wall pushes; a torque that
    isn't finite becomes zero; heat and torque bound each joint; unless the ring is being stopped, the rate bounds the
-   change, and heat and torque bound the result once more. [rt] */
+   change, and heat and torque bound the result again. [rt] */
 ETHD_API int32_t ethd_guard_step(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *state,
                                  const ethd_guard_motion *motion, double torque[2]) ETHD_RT;
 
-/* ---- joints: what a driver of an arm sends stays within each joint's limits ----
+/* ---- joints: keep the commands of an arm's driver within each joint's limits ----
 
-   A joint that is sent the speed v for each period T, and whose speed may fall by a T in one, needs from now on
+   A joint gets a commanded speed v for each period T, which may fall by a T in one period. Until it stands it travels
 
      D(v) = v T + (v - a T) T + (v - 2 a T) T + ...  = (k + 1) v T - k (k + 1) a T^2 / 2,   k a T <= v < (k + 1) a T
 
-   to stand: v^2 / (2 a) + v T / 2 or, between the multiples of a T, up to a T^2 / 8 more. At the distance d from its
-   bound it may be sent the v of D(v) = d: with k the whole part of (sqrt(1 + 8 d / (a T^2)) - 1) / 2,
+   This is v^2 / (2 a) + v T / 2 or, between the multiples of a T, up to a T^2 / 8 more. At the distance d from its
+   bound the largest allowed v solves D(v) = d: with k the whole part of (sqrt(1 + 8 d / (a T^2)) - 1) / 2,
 
      v = (d / T + k (k + 1) a T / 2) / (k + 1)
 
    Then v - a T is allowed in the next period, since D(v - a T) = D(v) - v T, and so on until it stands at the bound: a
-   joint that kept its limits can keep them. This holds for q and v *as sent*: v of the last period, q the place that
-   the speeds sent add up to, q += v T. A servo that follows late without overshoot, by a delay or a lag of first order,
-   moves by averages of what it was sent, so it stays within the same bounds.
+   joint within its limits can always stay within them. This holds for the *commanded* q and v: v of the last period,
+   and q the sum of the commanded motion, q += v T. A servo that follows late without overshoot, by a delay or a lag of
+   first order, moves by averages of its commands, so it stays within the same bounds.
 
    A torque is a change of speed by torque T / inertia, in which the joint moves by the mean of its speeds before and
-   after. The place q + v T / 2 then moves as q does above, and the same bounds hold for it; q, v: measured. The fall a T
-   is then also no more than what the torque gives. `inertia` is the joint's own, as if nothing coupled it. */
+   after. The position q + v T / 2 then moves as q does above, and the same bounds hold for it; q, v: measured. The
+   torque limit also bounds the fall a T. `inertia` is the joint's own, as if nothing coupled it. */
 #define ETHD_JOINTS_MAX 7
 
 typedef enum ethd_joints_kind { ETHD_JOINTS_SPEED, ETHD_JOINTS_TORQUE } ethd_joints_kind;
@@ -257,33 +256,33 @@ typedef struct ethd_joint_limits {
   ethd_joint_limit joint[ETHD_JOINTS_MAX];
 } ethd_joint_limits;
 
-/* What bound a command. */
+/* The limit that bound a command. */
 typedef enum ethd_joints_bound {
   ETHD_JOINTS_FREE,
   ETHD_JOINTS_POSITION,
   ETHD_JOINTS_FAST,
   ETHD_JOINTS_ACCELERATION,
   ETHD_JOINTS_STRONG, /* its torque */
-  ETHD_JOINTS_FINITE  /* a number wasn't finite: 0 was asked of every joint instead */
+  ETHD_JOINTS_FINITE  /* a number wasn't finite: a request of 0 for every joint took its place */
 } ethd_joints_bound;
 
 typedef struct ethd_joints_ruling {
-  double share;            /* of the vector that was asked for, 0 to 1 */
-  int32_t joint;           /* from 0, the one that bound it; -1: none */
+  double share;            /* of the requested vector, 0 to 1 */
+  int32_t joint;           /* from 0, the joint that bound it; -1: none */
   ethd_joints_bound bound; /* by what */
-  int32_t turned;          /* 1: the direction isn't the one asked for */
+  int32_t turned;          /* 1: the direction isn't the requested one */
 } ethd_joints_ruling;
 
-/* Checks each number against what is said above: ETHD_E_RANGE, ETHD_E_NOT_FINITE with its name. [main] */
+/* Checks each number against the ranges above: ETHD_E_RANGE, ETHD_E_NOT_FINITE with its name. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_joint_limits_check(const ethd_joint_limits *limits, ethd_error *error);
 
-/* Bounds a command, rad/s or Nm by limits->kind, in place and says what bound it. q, rad, and v, rad/s: as said above.
-   The vector is scaled as a whole, to the largest share that every joint allows. A joint that allows none, since it must
-   brake or turn round first, or that lies within a millionth of the largest number asked for, is bounded by itself
-   (`turned`). So an arm with a joint at its bound that is asked to go on stands still, and one that is asked to leave it
-   leaves. Beyond its limits, as after a hand moved it, a joint brakes by its acceleration and then only comes back;
-   where limits contradict each other the torque's come first, then the acceleration's. Limits that weren't checked, or
-   q or v that aren't finite: zero for every joint, ETHD_JOINTS_FINITE. [rt] */
+/* Bounds a command, rad/s or Nm by limits->kind, in place and returns the limit that bound it. q, rad, and v, rad/s: as
+   said above. The vector is scaled as a whole, to the largest share that every joint allows. A joint is bounded alone
+   (`turned`) if it allows no share, since it must first brake or reverse, or if it exceeds its bound by less than a
+   millionth of the largest requested number. So an arm with a joint at its bound stands still under a command beyond
+   it, and obeys a command away from it. Beyond its limits, for example after a person moved it, a joint brakes with its
+   acceleration and then may only return. If limits contradict, the torque's come first, then the acceleration's. Limits
+   that weren't checked, or q or v that aren't finite: zero for every joint, ETHD_JOINTS_FINITE. [rt] */
 ETHD_API ethd_joints_ruling ethd_guard_joints(const ethd_joint_limits *limits, const double *q, const double *v,
                                               double *command) ETHD_RT;
 

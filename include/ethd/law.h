@@ -1,25 +1,24 @@
-/* The plugin ABI: laws of three kinds, each a const table over state that the controller owns. Links from libethd.
+/* The plugin ABI: laws of three kinds, each a const table; the controller owns their state. Links from libethd.
 
-   Per tick, for every contact that counts:     transition  who rules? {beta, share, offset, damping}
+   Per tick, for every contact that counts:     transition  ruling: {beta, share, offset, damping}
                                                 contact     (gap, speed) -> force along n
    and once:                                    tracking    finger relative to ring -> torque
    The controller composes them:  tau = beta tau_t + J^T sum (share F_e - damping v + feed) n.
 
-   A law is asked about surfaces that are near. A transition law that looks ahead (`range`) is asked about farther ones
-   too and gets the device's abilities (`facts`), so that it can act in time.
+   The controller calls a law for near surfaces. It calls a transition law that looks ahead (`range`) for farther ones
+   too, with the device's abilities (`facts`), so that the law can act in time.
 
    A law is stateless code: numbers in, numbers out. It never allocates, never blocks, and keeps nothing of its own.
    Its state is a block of numbers (no pointers) that is zeroed before reset, copied, recorded, hashed.
    Parameters were checked against the table when the setup was posted: step trusts them.
    A law returns ETHD_OK also when there is no force; a contact law that doesn't push then sets *force to 0. A negative
-   status, or a number that isn't finite, sends the controller to its safe state. So do two mistakes for which a law
-   that isn't built in is watched: writing outside of its state block, which words with a known pattern around it show
-   (ETHD_E_FENCE), and changing the processor's rounding mode, flushing of small numbers or traps (ETHD_E_FENV). The
-   controller puts both back.
+   status, or a number that isn't finite, sends the controller to its safe state. So do two mistakes of laws that aren't
+   built in: writing outside of the state block, which guard words around it detect (ETHD_E_FENCE), and changing the
+   processor's rounding mode, flushing of small numbers or traps (ETHD_E_FENV). The controller restores both.
 
-   The ABI may break until 1.0. Within an ABI ethd_param is frozen; what a step is given (ethd_contact,
-   ethd_tracking_in, ethd_facts) and the law structs grow at their end, and a law says how large its struct is:
-   one that was built against an older header runs as it did. include/README.md has the policy. */
+   The ABI may break until 1.0. Within an ABI ethd_param is frozen; a step's inputs (ethd_contact, ethd_tracking_in,
+   ethd_facts) and the law structs grow at their end, and a law states the size of its struct: a law that was built
+   against an older header runs as before. include/README.md has the policy. */
 #ifndef ETHD_LAW_H
 #define ETHD_LAW_H
 
@@ -46,16 +45,16 @@ typedef struct ethd_law {
   const char *brief;   /* one line: 1 to ETHD_BRIEF_MAX printable ASCII characters */
   const ethd_param *params;
   uint32_t param_count;
-  /* Relations between parameters that rows can't say; NULL: none. Negative refuses the post. *error, never NULL, comes
-     with the law's id as its name and without numbers. [main] */
+  /* Checks relations between parameters that rows can't express; NULL: there are none. A negative status refuses the
+     post. *error, never NULL, holds the law's id as its name and no numbers at the call. [main] */
   ethd_status (*check)(const double *p, ethd_error *error);
   /* Fills a zeroed state block; NULL: zeros are right. [rt] */
   void (*reset)(const double *p, void *state) ETHD_RT;
 } ethd_law;
 
-/* Which of a law's parameters are the gains of its loop, by name; NULL: the law has no such gain. Of tracking they are a
-   stiffness and a damping of each joint (Nm/rad, Nms/rad), of a contact law those of the wall (N/m, Ns/m), and of a
-   transition law the damping of its braking (Ns/m). ethd-check judges the loop by them. */
+/* The names of the parameters that are the gains of a law's loop; NULL: the law has no such gain. Tracking: stiffness
+   and damping of each joint (Nm/rad, Nms/rad); contact: those of the wall (N/m, Ns/m); transition: the damping of its
+   braking (Ns/m). ethd-check judges the loop by them. */
 typedef struct ethd_gains {
   const char *stiffness, *damping;
 } ethd_gains;
@@ -68,7 +67,7 @@ typedef struct ethd_tracking_in {
   ethd_vec eps_x;      /* X_f - X_r, m, in R_0 */
   ethd_vec eps_v;      /* V_f - V_r, m/s */
   double period;       /* s since the last step */
-  ethd_vec finger_v;   /* V_f, m/s, in R_0: what a law needs to lead the finger before a contact exists */
+  ethd_vec finger_v;   /* V_f, m/s, in R_0, for a law that leads the finger before a contact exists */
 } ethd_tracking_in;
 
 /* The same in space (ethd/space.h). */
@@ -79,12 +78,12 @@ typedef struct ethd_follow_in {
   double period;      /* s since the last step */
 } ethd_follow_in;
 
-/* A law has a step, for the paper's device, or follows in space, or both. */
+/* A law has a step, for the paper's device, or functions for space, or both. */
 typedef struct ethd_tracking_law {
   ethd_law law;
   /* tau: joint torques before beta, Nm (eq. 2). NULL: ethd_control takes J^T of `force`. [rt] */
   ethd_status (*step)(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) ETHD_RT;
-  const ethd_gains *gains; /* NULL, or a struct that ends before it: not known, so the loop isn't judged */
+  const ethd_gains *gains; /* NULL, or a struct that ends before it: unknown gains, so the loop isn't judged */
   /* Force, N, or velocity, m/s, of the end effector before beta, in R_0. NULL, or a struct that ends before it:
      ethd_space refuses the law for such commands. [rt] */
   ethd_status (*force)(const double *p, void *state, const ethd_follow_in *in, ethd_vec3 *out) ETHD_RT;
@@ -97,14 +96,13 @@ typedef struct ethd_tracking_law {
           o    (      )    d_re       |//////     d_re = n.(P - X_r) - R_r       ring's inner circle to object
                      |<-------------->P--> n      d_fe = n.(P - X_f) - R_f       finger to object
                                       |//////     d_fr = n.(P - X_f) - R_r       finger grown to the ring
-   Minima of one object that face the same way within 15 deg are one contact, the deepest: a curve drawn
-   with short edges pushes once.
-   Lengths in m, < 0: penetrating. v = n.(V_r - V of the surface) in m/s, > 0: entering.
+   Minima of one object whose normals differ by less than 15 deg are one contact, the deepest: a curve of short edges
+   pushes once. Lengths in m, < 0: penetrating. v = n.(V_r - V of the surface) in m/s, > 0: entering.
 
-   A contact *counts* while any of these holds: d_re < d_beta; d_fr <= d_beta before its law has been asked and
-   ruling.argument <= d_beta afterwards; d_re < range, for a law that looks ahead; its state isn't
-   ETHD_TRANSPARENT. Only contacts that count have a law asked, a state block and a place in the trace, and at
-   most ETHD_CONTACTS_MAX do, the deepest. A contact that stops counting is forgotten. */
+   A contact *counts* while any of these holds: d_re < d_beta; d_fr <= d_beta before the call of its law, and
+   ruling.argument <= d_beta after it; d_re < range, for a law that looks ahead; its state isn't ETHD_TRANSPARENT. Only
+   contacts that count have calls of laws, a state block and a place in the trace: at most ETHD_CONTACTS_MAX, the
+   deepest. A contact that stops counting is forgotten. */
 
 /* Abilities of the device and its estimators along a contact's n, for a law that looks ahead. NaN: not known. The
    controller calculates it from the driver's data (ethd_dynamics), the limits and the arm. */
@@ -114,14 +112,14 @@ typedef struct ethd_facts {
   double applied;       /* N along n: force of the last tick's torque, after the guard */
   double friction;      /* N: Coulomb friction along n */
   double viscous;       /* Ns/m */
-  double delay;         /* s from the joint sample to the force; 0 where the place is the one commanded (space.h) */
+  double delay;         /* s from the joint sample to the force; 0 if the position is the commanded one (space.h) */
   double lag;           /* s: delay of v (ethd_velocity_lag) */
   double ring_radius;   /* R_r, m */
   double finger_radius; /* R_f, m */
-  double finger_age;    /* s: how long ago the finger was where its estimate shows it; NaN: it hasn't been seen */
+  double finger_age;    /* s: age of the finger's estimated position; NaN: the finger hasn't been seen */
   double finger_a;      /* m/s^2: acceleration of the finger's estimate along n */
-  double *memory;       /* ETHD_MEMORY numbers of the law's own that outlive its contacts: zeroed by create, reset and
-                           a change of the law, recorded and replayed */
+  double *memory;       /* the law's own ETHD_MEMORY numbers, which outlive its contacts: zeroed by create, reset and a
+                           change of the law, recorded and replayed */
   double acceleration;  /* m/s^2 that the device can give along n under velocity commands */
 } ethd_facts;
 #define ETHD_MEMORY 4u
@@ -144,22 +142,22 @@ typedef struct ethd_contact {
 typedef struct ethd_contact_law {
   ethd_law law;
   /* gap: m, to the (offset) wall, < 0 inside; speed: ethd_contact.v, m/s, > 0 entering; entering: 1 on the branch of
-     eq. 3 for a ring that moves in, 0 on the other, with v_hysteresis between them. force: N along n, to be set by
-     every call: < 0 pushes the ring out, 0 where it doesn't push; the controller cuts an attractive one to 0. It is
-     called in every tick in which the contact counts and its transition law's share is over 0, so not while offset
-     brakes; it gets no period, so a law of state counts its calls or does without time. [rt] */
+     eq. 3 for a ring that moves in, 0 on the other, with v_hysteresis between them. force: N along n, which every call
+     must set: < 0 pushes the ring out, 0: no push; the controller cuts an attractive force to 0. It is called in every
+     tick in which the contact counts and its transition law's share is over 0, so not while offset brakes. It gets no
+     period: a law with state counts its calls or needs no time. [rt] */
   ethd_status (*step)(const double *p, void *state, double gap, double speed, int entering, double *force) ETHD_RT;
   const ethd_gains *gains; /* as of tracking */
 } ethd_contact_law;
 
-/* ---- transition: who rules ---- */
+/* ---- transition: shares of tracking and wall ---- */
 
 /* The paper's states. A law may number states of its own from 3 up.
    A contact goes on as long as its state isn't ETHD_TRANSPARENT. */
 enum { ETHD_TRANSPARENT = 0, ETHD_BRAKING = 1, ETHD_VO = 2 };
 
 typedef struct ethd_ruling {
-  double beta;     /* share of the tracking torque, 0 to 1; the smallest over the contacts counts */
+  double beta;     /* share of the tracking torque, 0 to 1; the smallest of all contacts counts */
   double share;    /* share of the contact law's force, 0 to 1 */
   double offset;   /* eps, m: how much deeper the wall lies */
   double damping;  /* bilateral along n, Ns/m (eq. 6): F = -damping v n */
@@ -168,11 +166,11 @@ typedef struct ethd_ruling {
   int32_t state;
   int32_t reserved;
   double lead;  /* m along n, added to X_f - X_r; the lead of the contact with the smallest beta counts */
-  double speed; /* m/s along n against the surface that the effector mustn't exceed; INFINITY: none. In state ETHD_VO
-                   an effector under velocity commands has this very speed along n, so 0 holds it at the surface */
+  double speed; /* m/s: limit of the effector's speed along n, relative to the surface; INFINITY: none. In state ETHD_VO
+                   an effector under velocity commands has exactly this speed, so 0 holds it at the surface */
 } ethd_ruling;
 
-/* A live contact as the law that was replaced leaves it, at the tick of the swap. */
+/* A contact as the replaced law leaves it, at the tick of the swap. */
 typedef struct ethd_past {
   double offset;  /* eps of the last ruling, m */
   double d_re, v; /* of the contact, m and m/s */
@@ -184,16 +182,16 @@ typedef struct ethd_past {
 
 typedef struct ethd_transition_law {
   ethd_law law;
-  /* `out` comes zeroed but for beta = 1, argument = d_fe and speed = INFINITY. [rt] */
+  /* At the call `out` is zero, except for beta = 1, argument = d_fe and speed = INFINITY. [rt] */
   ethd_status (*step)(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) ETHD_RT;
 
-  /* All that follows is optional: NULL, or a struct that ends before it, says that the law doesn't have it. */
+  /* The following fields are optional: NULL, or a struct that ends before it: the law doesn't have it. */
 
-  /* Returns how far ahead the law wants to be asked, m of d_re, when the ring moves at this speed, m/s. A result that
-     is less than d_beta or isn't finite counts as d_beta. Scenes are searched this far, so ask for no more than you
-     need. ethd_setup_range asks with an infinite speed. [rt] */
+  /* Returns how far ahead the law looks, m of d_re, when the ring moves at this speed, m/s. A result that is less than
+     d_beta or isn't finite counts as d_beta. Scenes are searched this far, so a long range costs time. ethd_setup_range
+     calls it with an infinite speed. [rt] */
   double (*range)(const double *p, double speed) ETHD_RT;
-  /* Takes over a live contact at a swap of laws, into a state block that has been reset. NULL: the contact starts again.
+  /* Takes over a contact at a swap of laws, into a state block that has been reset. NULL: the contact starts again.
      [rt] */
   void (*adopt)(const double *p, void *state, const ethd_past *past) ETHD_RT;
   const ethd_gains *gains; /* as of tracking */
@@ -220,7 +218,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_law_check(const ethd_law *law, ethd_er
 /* Returns the gains that a law of any kind names, NULL if it doesn't say. [any] */
 ETHD_API const ethd_gains *ethd_law_gains(const ethd_law *law);
 
-/* ---- built in; there is nothing special about them ---- */
+/* ---- built-in laws; they use the same interface as plugins ---- */
 
 ETHD_API extern const ethd_tracking_law ethd_tracking_pd, ethd_tracking_follow;
 ETHD_API extern const ethd_contact_law ethd_contact_kelvin_voigt, ethd_contact_spring, ethd_contact_hunt_crossley;

@@ -3,43 +3,42 @@
 
      sleep until the tick -> driver read -> ethd_control_step -> driver write -> count -> row into a ring
 
-   With a controller of space.h in the place of control.h's, and a device that is opened for space, it does the same:
+   For space it does the same with a controller of space.h and a device that is opened for space:
 
      -> driver read_space -> surfaces, able -> ethd_space_step -> driver write_space ->
 
-   The thread waits on CLOCK_MONOTONIC for absolute instants on a grid of whole periods. A tick that isn't
-   done when the next one is due is an overrun: the whole periods that were lost are counted, handed to the
-   next step as `missed`, and the loop goes on at the next instant of the grid, never in a burst. In a tick the
-   thread takes no mutex and makes no system call but the sleep (a clock is read without one).
+   The thread waits on CLOCK_MONOTONIC for absolute instants on a grid of whole periods. A tick that isn't done when the
+   next one is due is an overrun: the lost whole periods are counted and given to the next step as `missed`, and the
+   loop goes on at the next instant of the grid, never in a burst. In a tick the thread takes no mutex and makes no
+   system call except the sleep (reading a clock needs none).
 
-   CLOCK_MONOTONIC stands still while the machine is suspended, CLOCK_BOOTTIME doesn't. What the second gains on the
-   first from tick to tick counts as missed too, and is row CLOCK of the fault table. This doesn't hold on Xenomai's
-   Cobalt, which has a clock of its own.
+   CLOCK_MONOTONIC stands still while the machine is suspended, CLOCK_BOOTTIME doesn't. If their difference grows from
+   tick to tick, the growth counts as missed too, and is row CLOCK of the fault table. Xenomai's Cobalt has its own
+   clock and doesn't do this.
 
-   What the machine refuses (real-time priority, locked memory, ...) is data, a set of bits with a sentence
-   each; require_rt makes it a failure. With a virtual clock there are no threads: ethd_loop_tick does one
-   tick, the driver's service included, and equal inputs give equal bits.
+   Each refusal of the machine (real-time priority, locked memory, ...) is a bit with a sentence; require_rt makes it a
+   failure. With a virtual clock there are no threads: ethd_loop_tick does one tick, the driver's service included, and
+   equal inputs give equal bits.
 
-   A step that runs for more than 0.1 s is over its budget (row BUDGET), whatever limits.step_time says. A second
-   realtime thread watches over the loop's: when a step is over that budget, or the loop is silent for longer than
-   `gap`, it makes the device safe, disarms it and raises row LOOP. Without a gap (INFINITY) it watches steps alone: a
-   driver whose read or write doesn't return then keeps its torque until its own watchdog takes it. A loop that hasn't
-   begun a tick for half a second and for four periods hangs, because code that it called doesn't return:
-   ethd_loop_hangs says so, and in which law. No thread can be ended from outside, so ethd_loop_join then gives up and
-   fails; loop, controller, setup and laws stay in memory until the process ends.
+   A step that runs for more than 0.1 s is over its budget (row BUDGET), for any limits.step_time. A second realtime
+   thread watches the loop's: if a step is over that budget, or the loop is silent for longer than `gap`, it makes the
+   device safe, disarms it and raises row LOOP. Without a gap (INFINITY) it watches steps only: if a driver's read or
+   write then doesn't return, the torque stays until the driver's own watchdog removes it. A loop that hasn't begun a
+   tick for half a second and for four periods hangs, because a call doesn't return: ethd_loop_hangs reports it, with
+   the law. No thread can be ended from outside, so ethd_loop_join then gives up and fails; loop, controller, setup and
+   laws stay in memory until the process ends.
 
    Create the loop before the device is started, and start it at once after that:
 
      ethd_device_open -> ethd_control_create -> ethd_loop_create -> ethd_device_start -> ethd_loop_start
 
-   ethd_loop_create does what takes long (in a large program locking the memory takes seconds); a drive that is enabled
-   waits for its first message only some milliseconds until its watchdog, or the servo's guardian, takes the torque
-   away.
+   ethd_loop_create does the slow work (locking the memory of a large program takes seconds). An enabled drive waits for
+   its first message only some milliseconds; then its watchdog, or the servo's guardian, removes the torque.
 
-   A child that the process makes by fork (system and popen exec, daemon and multiprocessing don't) has a copy of the
-   loop and none of its threads, and the device stays the parent's. There the loop has ended and isn't armed, join
-   returns ETHD_E_ARGUMENT, enable and home ETHD_STATUS_BUSY, and destroy frees the copy; none of them calls the driver.
-   So daemon() comes before ethd_loop_start.
+   A forked child that doesn't exec (daemon and multiprocessing; system and popen do exec) has a copy of the loop but
+   none of its threads, and the device belongs to the parent. In the child the loop has ended and isn't armed, join
+   returns ETHD_E_ARGUMENT, enable and home return ETHD_STATUS_BUSY, and destroy frees the copy; none of them calls the
+   driver. So call daemon() before ethd_loop_start.
 
    Destroy the loop before its device and its controller. */
 #ifndef ETHD_LOOP_H
@@ -62,15 +61,15 @@ typedef struct ethd_histogram {
   int64_t max; /* ns, exact */
 } ethd_histogram;
 
-/* Counts a duration, a negative one as 0, one beyond the last bin in that. [any, rt-safe] */
+/* Counts a duration; a negative one counts as 0, one beyond the last bin in the last bin. [any, rt-safe] */
 ETHD_API void ethd_histogram_add(ethd_histogram *histogram, int64_t ns) ETHD_RT;
 
 /* Return the first and the last duration of a bin, ns. [any, rt-safe] */
 ETHD_API int64_t ethd_histogram_first(uint32_t bin) ETHD_RT;
 ETHD_API int64_t ethd_histogram_last(uint32_t bin) ETHD_RT;
 
-/* Returns the duration, ns, that at least `share` (0 to 1) of all don't exceed, rounded up to the end of its bin but
-   never over max; 0 if there are none. [any, rt-safe] */
+/* Returns the duration, ns, that at least the share `share` (0 to 1) of all durations don't exceed, rounded up to the
+   end of its bin but never over max; 0 if there are none. [any, rt-safe] */
 ETHD_API int64_t ethd_histogram_at(const ethd_histogram *histogram, double share) ETHD_RT;
 
 /* ---- shortfalls of the machine ---- */
@@ -78,7 +77,7 @@ ETHD_API int64_t ethd_histogram_at(const ethd_histogram *histogram, double share
 enum {
   ETHD_SHORT_FIFO = 1,        /* no SCHED_FIFO: the loop runs at ordinary priority */
   ETHD_SHORT_MLOCK = 2,       /* memory isn't locked */
-  ETHD_SHORT_AFFINITY = 4,    /* not bound to the cpu that was asked for */
+  ETHD_SHORT_AFFINITY = 4,    /* not bound to the requested cpu */
   ETHD_SHORT_DMA_LATENCY = 8, /* dma_latency couldn't be held: the processor may sleep deeply */
   ETHD_SHORT_PREEMPT = 16,    /* the kernel isn't a realtime one */
   ETHD_SHORT_IO = 32          /* no SCHED_FIFO for the device's I/O threads: they run at ordinary priority */
@@ -91,7 +90,7 @@ ETHD_API const char *ethd_shortfall_mend(int32_t bit);
 
 /* ---- the loop ---- */
 
-#define ETHD_IO_BELOW 5    /* by how much the I/O threads' priority is lower; it stays at least 1 */
+#define ETHD_IO_BELOW 5    /* difference of the I/O threads' lower priority, which is at least 1 */
 #define ETHD_CPU_NONE (-1) /* any processor, as the kernel chooses */
 #define ETHD_CPU_AUTO (-2) /* the isolated processor with the highest number, if there is one */
 
@@ -99,11 +98,11 @@ ETHD_API const char *ethd_shortfall_mend(int32_t bit);
 typedef struct ethd_loop_def {
   uint32_t cookie;          /* set by ethd_loop_default */
   uint32_t bytes;           /* set by ethd_loop_default: the first size that isn't this library's, 0: none */
-  ethd_device *device;      /* of ethd_device_open; it is started between create and start */
-  ethd_control *control;    /* only the loop steps it while the loop exists; NULL: `space` is there */
+  ethd_device *device;      /* from ethd_device_open; start it between ethd_loop_create and _start */
+  ethd_control *control;    /* only the loop steps it while the loop exists; NULL: `space` is used */
   double period;            /* s, the controller's (ethd_control_period), 1e-5 to 1; another one is refused */
   int32_t cpu;              /* number of a processor, ETHD_CPU_NONE or ETHD_CPU_AUTO */
-  int32_t priority;         /* of SCHED_FIFO, 1 to 99; the device's I/O threads come ETHD_IO_BELOW under it */
+  int32_t priority;         /* of SCHED_FIFO, 1 to 99; the device's I/O threads have ETHD_IO_BELOW less */
   int32_t require_rt;       /* 1: start fails at any shortfall */
   int32_t dma_latency;      /* us, held while the loop exists; -1: not held */
   double early_wake;        /* s, 0 to period / 2: the loop wakes this early, warms the caches and spins to the tick */
@@ -116,35 +115,35 @@ typedef struct ethd_loop_def {
   int64_t *clock;           /* NULL: the system's. Else a virtual clock, ns: the loop sets it to each tick's
                             instant, a driver may move it on */
   const int64_t *suspended; /* ns for which a virtual clock has stood still so far; NULL: it never stands still */
-  ethd_space *space;        /* in the place of `control`, for a device in space; exactly one of the two is there */
+  ethd_space *space;        /* for a device in space; exactly one of `control` and `space` is set */
   /* For `space`: fills `out` with the surfaces near the effector of this sense, for the step that follows, and returns
-     how many there are. While nothing is known of the device it isn't asked. NULL: there are none. It is asked within
-     the step's time budget; where it hangs, the device's code seems to. */
+     how many there are. It isn't called while the device can't be read. NULL: there are none. It runs within the step's
+     time budget; if it hangs, ethd_loop_hangs reports the device's code. */
   uint32_t (*surfaces)(void *of, const ethd_space_sense *sense, ethd_surface out[ETHD_SURFACES_MAX]) ETHD_RT;
   void *surfaces_of;
 } ethd_loop_def;
 
 typedef struct ethd_loop ethd_loop;
 
-/* Marks of a row: what was done before its step. */
+/* Marks of a row: actions before its step. */
 enum {
   ETHD_ROW_STARTED = 1, /* the device was started and the controller reset */
   ETHD_ROW_CLEARED = 2  /* ethd_control_acknowledge was called */
 };
 
-/* One tick. The device got `share` of the trace's torque. */
+/* One tick. The device got the share `share` of the trace's torque. */
 typedef struct ethd_loop_row {
   ethd_trace trace;
   double share;   /* 0 to 1; 0 while disabled */
-  uint64_t lost;  /* rows before this one that found no room */
+  uint64_t lost;  /* earlier rows for which the ring had no room */
   uint64_t swaps; /* posted setups taken up to this tick, lost rows included */
   int32_t marks, armed;
   double heat[2]; /* of the motors when the device was last started, see ethd_control_heat */
 } ethd_loop_row;
 
-/* One tick in space. The sense's ability is the device's along the normal of the surface that is nearest to the
-   sense's x, unless the driver's read gave one; its `commanded` is what was written, where that wasn't the command as a
-   whole, unless the driver's read knows better. */
+/* One tick in space. The sense's ability is the device's along the normal of the surface nearest to the sense's x,
+   unless the driver's read gave one. Its `commanded` is the written command, if only a share of the command was
+   written, unless the driver's read gave one. */
 typedef struct ethd_space_row {
   ethd_space_trace trace;
   double share;
@@ -160,18 +159,18 @@ typedef struct ethd_loop_stats {
   uint64_t read_failures, write_failures, service_failures;
   uint64_t rows_lost;
   uint64_t faults[ETHD_FAULT_COUNT]; /* occurrences; while threads run, up to the last enabling */
-  ethd_histogram wake;               /* from the instant that was asked for to the first instruction */
+  ethd_histogram wake;               /* from the requested instant to the first instruction */
   ethd_histogram tick;               /* read, step, write */
 } ethd_loop_stats;
 
-/* Fills a definition for ethd_loop_default, with the sizes, bytes, of ethd_loop_def, _row and _stats, and of
-   ethd_space_row there. [any] */
+/* Fills a definition for ethd_loop_default, with the caller's sizes, bytes, of ethd_loop_def, _row and _stats, and of
+   ethd_space_row. [any] */
 ETHD_API void ethd_loop_fill(ethd_loop_def *def, uint32_t def_size, uint32_t row_size, uint32_t stats_size,
                              uint32_t space_row_size);
 
 /* Returns 1 ms, no cpu, priority 80, early_wake 0, dma_latency -1, no gap, no heartbeat, soft_start 0.1 s, 256 KiB,
-   4096 rows. Headers in which a struct has another size than in this library get a definition that ethd_loop_create
-   refuses. [any] */
+   4096 rows. With headers in which a struct has another size than in this library it returns a definition that
+   ethd_loop_create refuses. [any] */
 static inline ethd_loop_def ethd_loop_default(void) {
   ethd_loop_def def;
   ethd_loop_fill(&def, (uint32_t)sizeof def, (uint32_t)sizeof(ethd_loop_row), (uint32_t)sizeof(ethd_loop_stats),
@@ -180,9 +179,10 @@ static inline ethd_loop_def ethd_loop_default(void) {
 }
 
 /* Creates a loop, which doesn't run yet, locks the process's memory and makes the stack of the loop's thread; on a
-   virtual clock neither. ETHD_E_ARGUMENT ("device": it is open for the other front), ETHD_E_ABI (the driver's table), ETHD_E_RANGE with the field's name or
-   "units", of which a device has at most ETHD_UNITS_MAX; ETHD_E_MEMORY. ETHD_E_DEVICE: "xenomai" (this kernel has no
-   Cobalt), "clock" (Cobalt's and Linux's differ, by error->found s), "thread". [main] */
+   virtual clock neither. ETHD_E_ARGUMENT ("device": opened for the other kind of controller), ETHD_E_ABI (the driver's
+   table), ETHD_E_RANGE with the field's name or "units" (a device has at most ETHD_UNITS_MAX); ETHD_E_MEMORY.
+   ETHD_E_DEVICE: "xenomai" (this kernel has no Cobalt), "clock" (Cobalt's and Linux's differ, by error->found s),
+   "thread". [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error);
 
 /* Stops, joins and frees the loop; NULL is allowed. If join failed because a thread hangs, nothing is freed; then don't
@@ -191,13 +191,13 @@ ETHD_API void ethd_loop_destroy(ethd_loop *loop);
 
 /* Starts the loop's thread and one for each unit of the device's blocking I/O (on a virtual clock none), runs one dry
    tick and arms the device. ETHD_E_DEVICE: error->name says what failed: "require_rt", after which nothing runs, or
-   "thread". ETHD_E_ARGUMENT: it was started before, since a loop starts once. [main] */
+   "thread". ETHD_E_ARGUMENT: it was started before; a loop starts only once. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_start(ethd_loop *loop, ethd_error *error);
 
 /* Runs one tick on the virtual clock; does nothing without one. [main] */
 ETHD_API void ethd_loop_tick(ethd_loop *loop);
 
-/* Disarms: from the next tick on the device gets zero torque, also if its samples don't come; the loop goes on reading.
+/* Disarms: from the next tick on the device gets zero torque, even without new samples; the loop goes on reading.
    [any] */
 ETHD_API void ethd_loop_disarm(ethd_loop *loop);
 
@@ -205,29 +205,28 @@ ETHD_API void ethd_loop_disarm(ethd_loop *loop);
    [any] */
 ETHD_API int32_t ethd_loop_armed(const ethd_loop *loop);
 
-/* Says that the application is alive. While the device is armed it is stopped if no beat comes within `heartbeat`.
-   [any] */
+/* Signals that the application is alive. An armed device is stopped if no beat comes within `heartbeat`. [any] */
 ETHD_API void ethd_loop_beat(ethd_loop *loop);
 
-/* Reports a row of the fault table that the application sees, such as an emergency stop or a signal. Its bit is set in
-   the next sense only; raise it again while it lasts. [any] */
+/* Reports a row of the fault table that the application detects, such as an emergency stop or a signal. Its bit is set
+   in the next sense only; raise it again while it lasts. [any] */
 ETHD_API void ethd_loop_raise(ethd_loop *loop, ethd_fault fault);
 
 /* Acknowledges the controller's fault before the next step. [any] */
 ETHD_API void ethd_loop_acknowledge(ethd_loop *loop);
 
-/* Starts the device again, restarts the controller and arms, with a soft start; meanwhile the loop leaves both alone.
-   Must not be called while a posted setup waits. ETHD_STATUS_BUSY: the loop didn't release the device within a second;
-   else what the device's start returns: if that isn't ETHD_OK, the loop is disarmed. [main] */
+/* Starts the device again, restarts the controller and arms, with a soft start; meanwhile the loop uses neither. Must
+   not be called while a posted setup waits. ETHD_STATUS_BUSY: the loop didn't release the device within a second; else
+   the status of the device's start: if it isn't ETHD_OK, the loop is disarmed. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_enable(ethd_loop *loop);
 
-/* Calls the device's home, with the joints' angles, rad, or NULL (driver.h), while it is disarmed and the loop leaves
-   it alone. A controller without a fault is then restarted, since the pose may jump. ETHD_STATUS_BUSY: the loop didn't
+/* Calls the device's home, with the joints' angles, rad, or NULL (driver.h), while it is disarmed and the loop doesn't
+   use it. A controller without a fault is then restarted, since the pose may jump. ETHD_STATUS_BUSY: the loop didn't
    release the device, or is armed. ETHD_E_ARGUMENT: the device has no home. ETHD_E_RANGE: an angle that isn't finite or
    is over ETHD_SENSE_ANGLE_MAX; else what its home returns. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_home(ethd_loop *loop, const double *q);
 
-/* Asks the threads to end; zero torque is the last thing written. [any] */
+/* Asks the threads to end; their last command is zero torque. [any] */
 ETHD_API void ethd_loop_stop(ethd_loop *loop);
 
 /* Waits for the threads, after ethd_loop_stop for a second at most (eight periods if they are over 0.1 s). ETHD_E_LAW:
@@ -235,10 +234,10 @@ ETHD_API void ethd_loop_stop(ethd_loop *loop);
    ethd_loop_ended is 0, the thread hangs in the device. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_join(ethd_loop *loop);
 
-/* Takes the next row, in order; ETHD_STATUS_EMPTY when there is none. One reader at a time. [any] */
+/* Reads the next row, in order; ETHD_STATUS_EMPTY when there is none. One reader at a time. [any] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_take(ethd_loop *loop, ethd_loop_row *out);
 
-/* The same for a loop in space. Each of the two returns ETHD_E_ARGUMENT for a loop of the other front. [any] */
+/* The same for a loop in space. Each of the two returns ETHD_E_ARGUMENT for a loop of the other kind. [any] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_take_space(ethd_loop *loop, ethd_space_row *out);
 
 /* Returns ETHD_SHORT_* bits, known once it has started; 0 on a virtual clock. [main] */
@@ -250,11 +249,11 @@ ETHD_API int32_t ethd_loop_ended(const ethd_loop *loop);
 /* Returns the periods since the start, missed ones included: the loop's time over its period. [any] */
 ETHD_API uint64_t ethd_loop_periods(const ethd_loop *loop);
 
-/* Returns 1 while the loop's thread hangs, as said above; *law is then the law that it hangs in, NULL if it is the
-   device's code. law may be NULL. [any] */
+/* Returns 1 while the loop's thread hangs, as said above; *law is then the law in which it hangs, NULL if it hangs in
+   the device's code. law may be NULL. [any] */
 ETHD_API int32_t ethd_loop_hangs(const ethd_loop *loop, const ethd_law **law);
 
-/* Gives the loop's numbers; while it runs, they may come from two neighbouring ticks. [main] */
+/* Gives the loop's statistics; while it runs, they may come from two neighbouring ticks. [main] */
 ETHD_API void ethd_loop_read(const ethd_loop *loop, ethd_loop_stats *out);
 
 ETHD_END_DECLS

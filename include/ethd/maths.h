@@ -1,4 +1,4 @@
-/* Vectors of the plane and of space, and elementary functions that give the same bits everywhere. Links from libethd. */
+/* Vectors of plane and space, and elementary functions that give the same bits everywhere. Links from libethd. */
 #ifndef ETHD_MATHS_H
 #define ETHD_MATHS_H
 
@@ -12,7 +12,7 @@ typedef struct ethd_vec {
   double x, y;
 } ethd_vec;
 
-/* No function here changes a unit or a frame: vectors that are added have the same. */
+/* No function here changes a unit or a frame: the operands of a sum must have the same unit and frame. */
 
 /* Returns two numbers in memory, x first, as a vector. [any, rt-safe] */
 static inline ethd_vec ethd_vec_of(const double v[2]) ETHD_RT {
@@ -55,7 +55,7 @@ static inline double ethd_vec_norm(ethd_vec a) ETHD_RT { return sqrt(a.x * a.x +
 
 /* ---- vectors of space ---- */
 
-/* A vector of space, in a right-handed frame that its user names; m, rad, s, N. The plane's x and y are the first two. */
+/* A vector of space, in a right-handed frame that its user names; m, rad, s, N. The plane's are x and y. */
 typedef struct ethd_vec3 {
   double x, y, z;
 } ethd_vec3;
@@ -107,16 +107,16 @@ static inline double ethd_vec3_norm(ethd_vec3 a) ETHD_RT { return sqrt(a.x * a.x
 
 /* Elementary functions that give the same bits everywhere.
 
-   A C library picks its variant of sin or exp by the CPU it finds (with or without FMA), so the same
-   seed would give other bits on another machine. These functions use only + - * / and integers in a fixed order,
-   and give equal bits for every compiler and CPU with IEEE 754 doubles, as long as they are built
-   without contraction or value-changing optimisation (-ffp-contract=off, never -ffast-math).
+   A C library chooses its variant of sin or exp by the CPU (with or without FMA), so the same seed would give other
+   bits on another machine. These functions use only + - * / and integers in a fixed order, and give equal bits for
+   every compiler and CPU with IEEE 754 doubles, as long as they are built without contraction or value-changing
+   optimisation (-ffp-contract=off, never -ffast-math).
 
    Common to all: angles in rad; NaN in, NaN out, always the same NaN; round to nearest is assumed; errno is never set
-   and no floating-point flag is promised, but no argument leads to an invalid operation, a division by zero or an
-   overflow, which an application may have made traps (feenableexcept). With FTZ and DAZ set, as on the control thread,
-   subnormal arguments count as zeros and subnormal results may be zeros; all other results stay the same. ulp: a unit
-   in the last place of the exact result. The bounds are those of 6e8 points measured against 80-bit long double. */
+   and no floating-point flag is promised, but no argument causes an invalid operation, a division by zero or an
+   overflow, for which an application may have set traps (feenableexcept). With FTZ and DAZ set, as on the control
+   thread, subnormal arguments count as zeros and subnormal results may be zeros; all other results stay the same. ulp:
+   a unit in the last place of the exact result. The bounds were measured at 6e8 points against 80-bit long double. */
 
 ETHD_BEGIN_DECLS
 

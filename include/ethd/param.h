@@ -1,4 +1,4 @@
-/* Parameters as tables: the table is documentation (ethd-check --laws prints it) and check. Links from libethd. */
+/* Tables of parameters, for documentation (ethd-check --laws prints them) and for checks. Links from libethd. */
 #ifndef ETHD_PARAM_H
 #define ETHD_PARAM_H
 
@@ -24,8 +24,8 @@ typedef struct ethd_param {
   const char *brief;
 } ethd_param;
 
-/* A method that is chosen by its id and has parameters, but isn't a law: velocity estimators, finger fits, finger
-   filters. */
+/* A method: it is chosen by its id and has parameters like a law. Velocity estimators, finger fits and finger filters
+   are methods. */
 typedef struct ethd_method {
   const char *id;
   const char *brief;

@@ -1,9 +1,9 @@
 /* Laws from a shared object. Links from libethd.
 
    A plugin exports one data symbol:   const ethd_plugin_entry ethd_plugin = {sizeof(ethd_plugin_entry),
-   ETHD_ABI, "mine", "1.0", laws, 1};  A host reads what a file offers without calling any of its functions, but the
-   system's loader runs a file's constructors before anything can be looked at. So a plugin is trusted as the program
-   itself is. The checks and fences (law.h) find mistakes; they don't stop an attacker. */
+   ETHD_ABI, "mine", "1.0", laws, 1}; A host reads the file's table without calling any of its functions, but the
+   system's loader runs the file's constructors before any check. So a plugin must be trusted like the program itself.
+   The checks and fences (law.h) find mistakes; they don't stop an attacker. */
 #ifndef ETHD_PLUGIN_H
 #define ETHD_PLUGIN_H
 

@@ -1,4 +1,4 @@
-/* The virtual scene: objects of the plane, the distance to them, and the contacts within reach. Links from libethd.
+/* The virtual scene: objects of the plane, and local minima of the distance to them. Links from libethd.
 
        outside            inside
          x ----- n ---->|/////////     d > 0 outside, < 0 inside
@@ -50,7 +50,7 @@ typedef struct ethd_scene ethd_scene;
 
 /* Checks the objects and makes a scene of copies of them. Half-plane normals within 1e-6 of unit length are divided by
    their length, and c with them. Coordinates and sizes may be up to 1e6 m. ETHD_E_NOT_FINITE, ETHD_E_RANGE,
-   ETHD_E_GEOMETRY (points that rounding can't tell apart, self-intersecting), ETHD_E_ARGUMENT (a wrong count of
+   ETHD_E_GEOMETRY (points that differ only by rounding, self-intersecting), ETHD_E_ARGUMENT (a wrong count of
    numbers), ETHD_E_DUPLICATE, ETHD_E_FULL, ETHD_E_MEMORY; error->line is the object's. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out, ethd_error *error);
 
@@ -66,21 +66,21 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_parse(const char *text, size_t l
 /* Frees the scene; NULL is allowed. [main] */
 ETHD_API void ethd_scene_destroy(ethd_scene *scene);
 
-/* What a query found: the nearest object. */
+/* The result of a query: the nearest object. */
 typedef struct ethd_nearest {
   double distance;   /* m, signed; thin walls: >= 0 */
   ethd_vec point, n; /* m; unit vector into the object */
-  int32_t object;    /* of several as near the lowest; -1 and distance = inf in an empty scene, and from an x that isn't
-                        finite */
+  int32_t object;    /* of several equally near ones the lowest; -1 and distance = inf in an empty scene, and for an x
+                        that isn't finite */
 } ethd_nearest;
 
 /* Finds the nearest object to x, m in the scene's frame (R_0; a body's own), exact to 1e-12 times the scene's extent. n
-   is always a unit vector; where the gradient is undefined (on a segment, at a circle's centre) it may be any. [any,
-   rt-safe] */
+   is always a unit vector; where the gradient is undefined (on a segment, at a circle's centre) it is an arbitrary one.
+   [any, rt-safe] */
 ETHD_API void ethd_scene_query(const ethd_scene *scene, ethd_vec x, ethd_nearest *out) ETHD_RT;
 
-/* Where a query found its answer. It makes the next query near there quicker and never changes its answer. Start with
-   {0} and keep one for each thing that moves; a hint may be used with any scene. */
+/* The place of a query's result. It makes the next query near this place faster and never changes its result. Start
+   with {0} and keep one for each moving point; a hint may be used with any scene. */
 typedef struct ethd_scene_hint {
   uint32_t leaf, edge;
   int32_t step;
@@ -91,7 +91,7 @@ ETHD_API void ethd_scene_query_near(const ethd_scene *scene, ethd_vec x, ethd_sc
                                     ethd_nearest *out) ETHD_RT;
 
 /* A local minimum of the distance between x and the points of one object. Surfaces of a solid that face away from x
-   have none. A polyline whose last point is its first has no ends. */
+   have none. A polyline whose last point equals its first has no ends. */
 typedef struct ethd_touch {
   double distance; /* signed */
   ethd_vec point, n;
@@ -107,9 +107,9 @@ typedef struct ethd_touch {
 ETHD_API size_t ethd_scene_touches(const ethd_scene *scene, ethd_vec x, double range, ethd_touch *out,
                                    size_t room) ETHD_RT;
 
-/* Finds the touch of one object at x, m, that continues an earlier one: the local minimum whose point is nearest
-   to `from`, whatever its distance. For contacts that go on beyond the range. `object`: as a touch of this scene has
-   it; x and from: finite. [any, rt-safe] */
+/* Finds the touch of one object at x, m, that continues an earlier one: the local minimum whose point is nearest to
+   `from`, at any distance. For contacts that go on beyond the range. `object`: as a touch of this scene has it; x and
+   from: finite. [any, rt-safe] */
 ETHD_API void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from,
                                 ethd_touch *out) ETHD_RT;
 
@@ -121,15 +121,15 @@ typedef struct ethd_scene_info {
   size_t bytes;                      /* memory held */
 } ethd_scene_info;
 
-/* Says what a scene holds. [any] */
+/* Gives counts, extent and memory of a scene. [any] */
 ETHD_API void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out);
 
-/* A turned box of a tree, m. A box of level 1 is around one thing, one of level l around eight of the level below. */
+/* A rotated box of a tree, m. A box of level 1 encloses one item, one of level l eight boxes of the level below. */
 typedef struct ethd_scene_box {
   ethd_vec centre;
   double cosine, sine, half_u, half_v; /* u along (cosine, sine) */
   int32_t level;
-  int32_t of_chain; /* 1: the things are edges of a chain, 0: objects */
+  int32_t of_chain; /* 1: the items are edges of a chain, 0: objects */
 } ethd_scene_box;
 
 /* Gives box i, from 0 up to ethd_scene_info.boxes, for pictures; ETHD_STATUS_EMPTY: there is none. [any] */
@@ -139,13 +139,13 @@ ETHD_API ethd_status ethd_scene_box_at(const ethd_scene *scene, size_t i, ethd_s
    numbers belong to the scene. Returns its number in the file, -1 past the end. [any] */
 ETHD_API int32_t ethd_scene_object(const ethd_scene *scene, size_t i, ethd_object_def *out);
 
-/* Returns how many objects lie wholly farther than `radius`, m, from wherever this arm can hold the ring's centre; none
-   if it is NaN. [any] */
+/* Returns how many objects lie wholly farther than `radius`, m, from every position that the ring's centre can have on
+   this arm; none if it is NaN. [any] */
 ETHD_API size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius);
 
 /* Makes a scene without those objects (radius: m), for one arm; the others keep their numbers and give the same touches
-   to the bit. *out is NULL when no object would go: use the scene itself. A setup whose arm or ring reaches farther
-   refuses a pruned scene, and no body may have one. ETHD_E_MEMORY. [main] */
+   to the bit. *out is NULL if no object would be dropped: use the scene itself. A setup whose arm or ring reaches
+   farther refuses a pruned scene, and no body may have one. ETHD_E_MEMORY. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_prune(const ethd_scene *scene, const ethd_arm *arm, double radius,
                                                       ethd_scene **out, ethd_error *error);
 
@@ -155,8 +155,8 @@ ETHD_API const ethd_material *ethd_scene_material(const ethd_scene *scene, size_
 /* Returns "halfplane", "circle", ..., or "" for any other number. [any] */
 ETHD_API const char *ethd_shape_name(ethd_shape shape);
 
-/* Returns the numbers of a shape as a line of text has them, "X Y R"; "..." means that more points may follow. "" for
-   any other number. [any] */
+/* Returns the names of a shape's numbers in its text, "X Y R"; "..." means that more points may follow. "" for any
+   other number. [any] */
 ETHD_API const char *ethd_shape_form(ethd_shape shape);
 
 ETHD_END_DECLS

@@ -1,5 +1,5 @@
-/* One tick as seen from outside: a device's measurements (sense), its command, and all intermediate
-   results (trace). Links from libethd; a driver needs no more of the controller than this.
+/* One tick from outside: a device's measurements (sense), its command, and all intermediate results (trace). Links from
+   libethd; of the controller a driver needs only this header.
 
      device --- sense ---> ethd_control_step --- command ---> device
                                   |
@@ -23,19 +23,19 @@ ETHD_BEGIN_DECLS
 #define ETHD_SENSE_FORCE_MAX 1e6                  /* Nm, N */
 #define ETHD_SENSE_AGE_MAX 1.0                    /* s */
 
-/* What the sense holds, as bits of `have`. */
+/* The contents of a sense, as bits of `have`. */
 enum {
-  ETHD_HAVE_DQ = 1,     /* dq: used as it is; without it the setup's velocity estimator works on q */
+  ETHD_HAVE_DQ = 1,     /* dq: used as it is; without it the setup's velocity estimator computes it from q */
   ETHD_HAVE_FINGER = 2, /* finger, finger_v: used as they are at this tick, without fit or filter */
   ETHD_HAVE_START = 4,  /* finger: starts the filter there, at rest */
   ETHD_HAVE_CENTRE = 8, /* centre: a reading relative to the ring has arrived, taken at sample_ns */
-  ETHD_HAVE_RAYS = 16,  /* rays: a frame of distances has arrived, taken at sample_ns; a centre counts instead of it */
-  ETHD_HAVE_RING = 32,  /* ring: where the ring stood at sample_ns, as the device knows it */
-  ETHD_HAVE_BODY = 64,  /* ETHD_HAVE_BODY << i: bodies i has a new pose; else the last one holds; i < ETHD_BODIES_MAX */
+  ETHD_HAVE_RAYS = 16,  /* rays: a frame of distances has arrived, taken at sample_ns; ignored if there is a centre */
+  ETHD_HAVE_RING = 32,  /* ring: the ring's position at sample_ns, known by the device */
+  ETHD_HAVE_BODY = 64,  /* ETHD_HAVE_BODY << i: body i has a new pose; else its last one holds; i < ETHD_BODIES_MAX */
   ETHD_HAVE_WORLD =
-      1024, /* centre: a position in R_0, as a camera sees it, not relative to the ring; `ring` isn't used */
-  ETHD_HAVE_COMMANDED = 2048, /* commanded: it counts in the place of the torque of the last step's command */
-  ETHD_HAVE_AGE = 4096        /* age: by the joints' speeds both angles are brought to time_ns */
+      1024, /* centre: a position in R_0, e.g. from a camera, not relative to the ring; `ring` isn't used */
+  ETHD_HAVE_COMMANDED = 2048, /* commanded: it replaces the torque of the last step's command */
+  ETHD_HAVE_AGE = 4096        /* age: both angles are extrapolated to time_ns by the joints' speeds */
 };
 
 /* X(type, name, count, unit, brief); every field is 8 bytes wide. */
@@ -59,8 +59,8 @@ enum {
   X(double, commanded, 2, "Nm", "torque that was really commanded since the last step")             \
   X(double, age, 2, "s", "time from each joint's sample to time_ns, >= 0")
 
-/* X as above. What a tick worked out. Where no contact counts, d_re, d_fe and v_n are NaN. d_fe holds what the
-   transition law returned as ethd_ruling.argument: offset returns d_fr + eps, a law that leaves it alone d_fe. */
+/* X as above. The results of a tick. If no contact counts, d_re, d_fe and v_n are NaN. d_fe holds the transition law's
+   ethd_ruling.argument: d_fr + eps for offset, d_fe for a law that doesn't set it. */
 #define ETHD_TRACE_FIELDS(X)                                                       \
   X(int64_t, tick, 1, "1", "steps since create or reset")                          \
   X(int64_t, fault, 1, "1", "0, or the latched ethd_fault")                        \

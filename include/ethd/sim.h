@@ -4,9 +4,9 @@
    Its numbers are plausible and fitted to the paper's Table 1, not measured: say so wherever one is shown.
    Plants are data (files *.plant). The finger moves on its voluntary path; when the ring pushes it aside, the hand's
    spring and damper about that path push back. Where pad and ring meet, the force is Hunt and Crossley's. The motion is
-   worked out in steps of power series that reach from one torque update to the next and end where a contact changes;
-   ticks and samples are read from them. Everything is deterministic to the bit: every random number is a function of
-   (seed, tap, stream, counter). No floating-point trap that an application has set is taken. */
+   computed in steps of power series, each from one torque update to the next or to a change of contact; ticks and
+   samples are read from them. Everything is deterministic to the bit: every random number is a function of (seed, tap,
+   stream, counter). Floating-point traps of the application aren't triggered. */
 #ifndef ETHD_SIM_H
 #define ETHD_SIM_H
 
@@ -14,9 +14,9 @@
 
 ETHD_BEGIN_DECLS
 
-/* What measures the finger. */
+/* The sensor of the finger. */
 enum {
-  ETHD_READING_CENTRE, /* its centre, by whatever */
+  ETHD_READING_CENTRE, /* its centre, by an unspecified sensor */
   ETHD_READING_RAYS,   /* frames of 16 distances: the paper's ring */
   ETHD_READING_ZONES,  /* a ring of on-off light barriers (Yoshikawa and Nagura 1997) */
   ETHD_READING_NAIL,   /* one distance, to a plate on the nail (Nakagawara 2005, Fang 2009) */
@@ -40,7 +40,7 @@ typedef struct ethd_plant {
   double delay;                               /* s, measurement to torque, at most ETHD_SIM_DELAY_PERIODS periods */
   double count;                               /* rad per encoder count at the joint; 0: ideal encoders */
   int32_t count_phase;                        /* 1: the encoder's phase is drawn per tap and joint; 0: phase 0 */
-  double motor_mass;                          /* kg, part of mass on the motor's side; used when stiffness is finite */
+  double motor_mass;                          /* kg, part of mass on the motor's side; used if stiffness is finite */
   double stiffness, damping;                  /* transmission at the ring, N/m and Ns/m; stiffness INFINITY: rigid */
   double finger_mass;                         /* kg */
   double hand_stiffness, hand_damping;        /* N/m, Ns/m about the voluntary path, x and y alike */
@@ -48,22 +48,22 @@ typedef struct ethd_plant {
   double finger_radius, finger_radius_sd;     /* m */
   double rate, latency, noise;                /* Hz, s, m: proximity readings of the centre */
   int32_t reading;                            /* ETHD_READING_* */
-  int32_t reference;                          /* what `ring` of the sense is: 0 true ring, 1 motor side */
+  int32_t reference;                          /* source of the sense's `ring`: 0 true ring, 1 motor side */
   double ray_noise, ray_skew;                 /* m; s from ray 0 to ray 15, in ray order */
-  double start, start_sd;                     /* D0, m before the place where the ring would meet the wall */
+  double start, start_sd;                     /* D0, m before the position at which the ring would meet the wall */
   double overshoot, overshoot_spread;         /* O m, s: the finger aims O exp(s g) behind it */
   int32_t profile;                            /* ETHD_PROFILE_* */
   double ramp_up, ramp_down;                  /* s, with ETHD_PROFILE_CONSTANT */
   double lateral_sd;                          /* m, y offset */
   double speed_low, speed_high, speed_spread; /* m/s, m/s, coefficient of variation: V, of ETHD_PROFILE_MINIMUM_JERK
-                                                 where the path passes the place that `start` counts from */
+                                                 at the position from which `start` counts */
   int32_t metrics_side;                       /* 0: the ring's true speed; 1: the encoder's (motor) side */
   double band_low, band_high;                 /* m/s: valid within 0.2 +- band_low, 0.4 +- band_high */
   /* of the sensors that a plant file doesn't describe; ethd_plant_finger fills them */
   int32_t zones;          /* light barriers, 8 to 16 */
   double zone_reach;      /* m: a barrier is on while the finger is nearer */
   double zone_hysteresis; /* share of zone_reach between switching on and, further out, switching off */
-  double nail_angle;      /* rad: toward the sensor that sees the plate */
+  double nail_angle;      /* rad: direction to the sensor of the plate */
   double nail_step;       /* m: one step of its converter */
 } ethd_plant;
 
@@ -71,11 +71,11 @@ typedef struct ethd_plant {
    ETHD_E_DUPLICATE, ETHD_E_RANGE, ETHD_E_NOT_FINITE, ETHD_E_MEMORY; message holds one line. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_plant_load(const char *path, ethd_plant *out, char message[ETHD_MESSAGE_MAX]);
 
-/* Puts another sensor of the finger (ETHD_READING_*) into the plant, with figures of such hardware; the ring's (centre,
-   rays) are the plant's own. sim/finger.c says where they come from. [any] */
+/* Puts another sensor of the finger (ETHD_READING_*) into the plant, with figures of such hardware; those of the ring
+   (centre, rays) are the plant's own. sim/finger.c has the sources. [any] */
 ETHD_API void ethd_plant_finger(ethd_plant *plant, int32_t reading);
 
-/* Returns what a plant knows of its device, for ethd_setup.dynamics. [any] */
+/* Returns the dynamics of a plant's device, for ethd_setup.dynamics. [any] */
 ETHD_API ethd_dynamics ethd_plant_dynamics(const ethd_plant *plant);
 
 /* The hand's voluntary path: the paper's synthetic reach, or samples of a recorded movement. */
@@ -102,7 +102,7 @@ ETHD_API void ethd_path_at(const ethd_path *path, double t, ethd_vec *x, ethd_ve
 /* Returns when the synthetic path or the recording ends, s. [any] */
 ETHD_API double ethd_path_end(const ethd_path *path);
 
-/* One tap's circumstances. */
+/* The parameters of one tap. */
 typedef struct ethd_sim_tap {
   uint64_t seed, tap;   /* on which all random numbers depend */
   double finger_radius; /* m */
@@ -113,7 +113,7 @@ typedef struct ethd_sim_tap {
 
 /* Draws a synthetic tap at commanded speed `speed`, m/s, toward the wall that the ring meets with its centre at
    `meet`, m in R_0 (the wall on the left). Normal draws are cut at 2 sd, the speed at 2.5. A movement of minimum jerk
-   that begins or ends near the wall is slower there, so that nowhere it is more than 3 times as fast as drawn. [any] */
+   that begins or ends near the wall is slower there, so that its speed never exceeds 3 times the drawn speed. [any] */
 ETHD_API void ethd_sim_draw(const ethd_plant *plant, uint64_t seed, uint64_t tap, double speed, ethd_vec meet,
                             ethd_sim_tap *out);
 
@@ -140,7 +140,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_sim_create(const ethd_sim_def *def, et
 /* Frees the device; NULL is allowed. [main] */
 ETHD_API void ethd_sim_destroy(ethd_sim *sim);
 
-/* m/s: no hand is faster, and no plant draws a faster one. Each tick of a faster path would take ever more steps. */
+/* m/s: no hand is faster, and no plant draws a faster one. Ticks of faster paths would need more and more steps. */
 #define ETHD_HAND_SPEED_MAX 200.0
 
 /* Starts a tap at time 0 with the ring centred on the finger at the start of the path, both at rest.
@@ -172,7 +172,7 @@ typedef struct ethd_truth {
   ETHD_TRUTH_FIELDS(ETHD_FIELD)
 } ethd_truth;
 
-/* Gives the device's true state at the present tick, whatever its sensors say. [any], between ticks. */
+/* Gives the device's true state at the present tick, not that of its sensors. [any], between ticks. */
 ETHD_API void ethd_sim_truth(const ethd_sim *sim, ethd_truth *out);
 
 ETHD_END_DECLS

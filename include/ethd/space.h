@@ -1,28 +1,28 @@
-/* The controller of everything that moves in space: a ring, cap or plate on any arm, commanded by force or velocity.
-   One call per tick, a pure function of its inputs and one flat block of state; it knows no joints. Links from libethd.
+/* The controller in space: a ring, cap or plate on any arm, commanded by force or velocity. One call per tick, a pure
+   function of its inputs and one flat block of state; it knows no joints. Links from libethd.
 
      sense, surfaces --- ethd_space_step ---> command: force or velocity, normal
                                 |
                                 '--- trace
 
    Frame R_0: right-handed, of the user's choice; m, s, N. The laws, contacts, faults, events and swaps are those of
-   control.h, and `ethd_contact` is what law.h says, with the end effector's point X in the ring's place:
+   control.h, and `ethd_contact` is that of law.h, with the end effector's point X instead of the ring's centre:
 
      ring, cap   X: its centre; R_r: its inner radius
-     plate       X: the point at which the finger is to be, R_r before the plate's face; R_r - R_f is the stand-off
+     plate       X: the desired position of the finger, R_r before the plate's face; R_r - R_f is the stand-off
 
-   A cap's axis is the sense's `normal`, from its rim to its top: a finger whose centre is more than `rim` behind X along
-   it is out of the cap, row FINGER_OUT. This is known late where x is commanded, so who gives the readings sets the bit of
-   that row in `faults` itself, by ethd_cap_finger.gone (cap.h).
+   A cap's axis is the sense's `normal`, from its rim to its top. A finger whose centre is more than `rim` behind X
+   along it is out of the cap, row FINGER_OUT. If x is the commanded position, this is detected late; so the source of
+   the readings sets the bit of that row in `faults` itself, by ethd_cap_finger.gone (cap.h).
 
           X     R_r   |  d_re  |//////
           o-----------|<------>|//////     d_re = n.(P - X) - R_r
                  plate         P --> n
 
-   A law of velocity must see the place and speed that are *commanded*, not those that are measured: a measured place is
-   late by the device's delay, and the effector would go that much deeper. So for velocity commands the sense's x and v
-   are the commanded ones, and ethd_facts.delay is 0: nothing that the law sees is late. The device's delay stands in
-   `ability`; ethd-check says how much of the gap it takes. */
+   A law of velocity needs the *commanded* position and speed, not the measured ones: a measured position is late by the
+   device's delay, and the effector would go deeper by that distance. So for velocity commands the sense's x and v are
+   the commanded ones, and ethd_facts.delay is 0: the law's inputs are never late. The device's delay is in `ability`;
+   ethd-check prints how much of the gap it needs. */
 #ifndef ETHD_SPACE_H
 #define ETHD_SPACE_H
 
@@ -38,17 +38,17 @@ typedef enum ethd_effector { ETHD_EFFECTOR_RING = 0, ETHD_EFFECTOR_CAP = 1, ETHD
 
 /* ---- sense, command, trace ---- */
 
-/* What the sense holds, as bits of `have`. */
+/* The contents of a sense, as bits of `have`. */
 enum {
   ETHD_SPACE_HAVE_FINGER = 1,       /* finger, finger_v: used as they are, without filter */
   ETHD_SPACE_HAVE_READING = 2,      /* reading: a position has arrived, taken at sample_ns */
   ETHD_SPACE_HAVE_READING_V = 4,    /* reading_v, with its reading_v_noise */
   ETHD_SPACE_HAVE_EXTRAPOLATED = 8, /* the tracker has extrapolated the reading to time_ns */
-  ETHD_SPACE_HAVE_NORMAL = 16,    /* normal: where the plate faces. Without it X stands before the plate where that was
-                                       told to face, and in the face until a first surface is near */
-  ETHD_SPACE_HAVE_ABILITY = 32,   /* ability: of this tick, in the place of the setup's */
+  ETHD_SPACE_HAVE_NORMAL = 16,    /* normal: the plate's direction. Without it X lies before the plate in the commanded
+                                       direction, and in its face until a first surface is near */
+  ETHD_SPACE_HAVE_ABILITY = 32,   /* ability: of this tick, instead of the setup's */
   ETHD_SPACE_SURFACES = 64,       /* not in `have`: the value of row INPUT for the surfaces */
-  ETHD_SPACE_HAVE_COMMANDED = 128 /* commanded: it counts in the place of the last step's command */
+  ETHD_SPACE_HAVE_COMMANDED = 128 /* commanded: it replaces the last step's command */
 };
 
 #define ETHD_ABILITY 6 /* numbers of an ethd_ability */
@@ -74,7 +74,7 @@ enum {
   X(double, ability, 6, "m/s, m/s2, s, kg, N, N", "along the nearest surface's n; NaN: not known") \
   X(double, commanded, 3, "N, m/s", "what was really commanded since the last step")
 
-#define ETHD_NEAR_MAX 16       /* surfaces within range that a tick looks at, the deepest */
+#define ETHD_NEAR_MAX 16       /* surfaces within range that a tick uses, the deepest */
 #define ETHD_NEAR_REFUSED (-1) /* `near` of a tick that refused its surfaces (row INPUT) */
 
 #define ETHD_SPACE_TRACE_FIELDS(X)                                                                     \
@@ -116,8 +116,8 @@ typedef struct ethd_space_sense {
   ETHD_SPACE_SENSE_FIELDS(ETHD_FIELD)
 } ethd_space_sense;
 
-/* One whole tick: a step with `sense` and the `near` surfaces, or an impossible one if they were refused, gives the other
-   fields to the bit, but for `overflow`. record.h has its columns. */
+/* One whole tick: a step with `sense` and the `near` surfaces (with an impossible one if they were refused) gives the
+   other fields to the bit, except `overflow`. record.h has its columns. */
 typedef struct ethd_space_trace {
   ethd_space_sense sense;
   ETHD_SPACE_TRACE_FIELDS(ETHD_FIELD)
@@ -125,9 +125,9 @@ typedef struct ethd_space_trace {
 
 typedef struct ethd_space_command {
   double value[3];  /* N or m/s, by the setup's kind */
-  double normal[3]; /* unit vector that a plate is to face: of the nearest surface, turned no faster than turn_rate */
+  double normal[3]; /* unit vector for a plate: the nearest surface's normal, rotated no faster than turn_rate */
   int32_t kind;     /* ethd_space_kind */
-  int32_t safe;     /* 1: the device is to go into its safe state: zero torque, zero speed, brakes */
+  int32_t safe;     /* 1: the device must go into its safe state: zero torque, zero speed, brakes */
 } ethd_space_command;
 
 /* ---- setup ---- */
@@ -168,14 +168,14 @@ typedef struct ethd_space_command {
 #define ETHD_SPACE_COUNT(name, unit, min, max, def, brief) +1
 #define ETHD_SPACE_NUMBER_COUNT (0 ETHD_SPACE_NUMBERS(ETHD_SPACE_COUNT))
 
-/* Their rows; briefs that are "" go on with the row before. */
+/* Their rows; an empty brief continues that of the row before. */
 ETHD_API extern const ethd_param ethd_space_numbers[ETHD_SPACE_NUMBER_COUNT];
 
-/* What the device can do along a contact's normal. NaN: not known. */
+/* The device's ability along a contact's normal. NaN: not known. */
 typedef struct ethd_ability {
   double speed;        /* m/s */
   double acceleration; /* m/s^2 */
-  double delay;        /* s from a command to the motion that it leads to */
+  double delay;        /* s from a command to its motion */
   double mass;         /* kg */
   double force;        /* N */
   double friction;     /* N */
@@ -234,7 +234,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_check(const ethd_space_setup *se
 /* ---- a setup by names, as a configuration has them ---- */
 
 #define ETHD_SPACE_PARTS 4
-/* What is chosen by its id: finger_filter, tracking, contact, transition; offsets are those in ethd_space_setup. */
+/* The parts chosen by id: finger_filter, tracking, contact, transition, with their offsets in ethd_space_setup. */
 ETHD_API extern const ethd_setup_part ethd_space_parts[ETHD_SPACE_PARTS];
 
 /* As ethd_setup_part_of, ethd_setup_chosen and ethd_setup_choose, with their errors (ETHD_E_...). [any] */
@@ -243,16 +243,16 @@ ETHD_API ethd_method ethd_space_chosen(const ethd_space_setup *setup, const ethd
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_choose(ethd_space_setup *setup, const char *section, const char *id,
                                                        const ethd_law *const *laws, ethd_error *error);
 
-/* As ethd_setup_key_at, ethd_setup_set and ethd_setup_get, in the key's unit, with their errors (ETHD_E_...). Numbers of
-   ETHD_SPACE_NUMBERS are called "space.radius", those of the ability "ability.delay" (NaN: not known), kind and effector
-   "space.command" and "space.effector"; parameters as in the plane, "contact.k_e". [main] */
+/* As ethd_setup_key_at, ethd_setup_set and ethd_setup_get, in the key's unit, with their errors (ETHD_E_...). Names are
+   "space.radius" for the numbers of ETHD_SPACE_NUMBERS, "ability.delay" for those of the ability (NaN: not known),
+   "space.command" and "space.effector" for kind and effector; parameters as in the plane, "contact.k_e". [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_key_at(const ethd_space_setup *setup, uint32_t index,
                                                        ethd_setup_key *out);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_set(ethd_space_setup *setup, const char *name, double value,
                                                     ethd_error *error);
 ETHD_API double ethd_space_get(const ethd_space_setup *setup, const char *name);
 
-/* ---- the controller: as ethd_control_ of the same name says, for space ---- */
+/* ---- the controller: as the functions ethd_control_ of the same names, for space ---- */
 
 typedef struct ethd_space ethd_space;
 
@@ -263,9 +263,9 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_create(const ethd_space_setup *s
 /* Frees the controller; NULL is allowed. [main] */
 ETHD_API void ethd_space_destroy(ethd_space *space);
 
-/* Checks a whole setup and hands it over; the next step takes it, without a jump: the command's difference fades over
-   the new swap_time. ETHD_STATUS_BUSY: the last one hasn't been taken yet. The period, and the kind of command, can't
-   change (ETHD_E_ARGUMENT). Any refusal leaves everything as it was. [main] */
+/* Checks a whole setup and posts it; the next step takes it, without a jump: the command's difference fades over the
+   new swap_time. ETHD_STATUS_BUSY: the last post hasn't been taken yet. The period and the kind of command can't change
+   (ETHD_E_ARGUMENT). A refusal changes nothing. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_post(ethd_space *space, const ethd_space_setup *setup,
                                                      ethd_error *error);
 
@@ -275,31 +275,31 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_poll(ethd_space *space, ethd_eve
 /* Returns the period, s, of every setup that this controller has had or can get. [any, rt-safe] */
 ETHD_API double ethd_space_period(const ethd_space *space) ETHD_RT;
 
-/* Returns what it commands, forces or velocities, in every setup. [any, rt-safe] */
+/* Returns the kind of its commands, the same in every setup. [any, rt-safe] */
 ETHD_API ethd_space_kind ethd_space_commands(const ethd_space *space) ETHD_RT;
 
-/* Resets the state to that after create, under the setup that rules. Must not be called while step runs. [main] */
+/* Resets the state to that after create, under the setup in force. Must not be called while step runs. [main] */
 ETHD_API void ethd_space_reset(ethd_space *space);
 
-/* Resets all but what the transition law has learnt of the device, for a device that is enabled again. Must not be called
+/* Resets all but the transition law's memory of the device, for a device that is enabled again. Must not be called
    while step runs. [main] */
 ETHD_API void ethd_space_restart(ethd_space *space);
 
 /* Acknowledges a latched fault, as ethd_control_acknowledge does. [any, rt-safe] */
 ETHD_API void ethd_space_acknowledge(ethd_space *space) ETHD_RT;
 
-/* Returns for how long, s, nothing has called for a stop since a fault was latched; INFINITY: none is latched.
+/* Returns for how long, s, no row has called for a stop since a fault was latched; INFINITY: none is latched.
    [any, rt-safe] */
 ETHD_API double ethd_space_clean_time(const ethd_space *space) ETHD_RT;
 
 /* Runs one tick with `count` surfaces, local minima of the distance from X to the objects near it, in any order: those
-   farther than a contact reaches are skipped. Always fills command; trace may be NULL. Points of one id that face the
-   same way within 15 deg are one contact, the deepest. A contact goes on where a surface of its id, or one that faces
-   the same way if no id fits, is nearest to its last point, within R_r. Row INPUT of the fault table: a number that
-   isn't finite or possible (sense.h), a normal whose length isn't 1 within 1e-6, more than ETHD_SURFACES_MAX
-   surfaces, an unknown material. Returns as ethd_control_step does (ETHD_E_...). After a row
-   whose reaction is STOP, a velocity command goes to zero with `acceleration`, however long that takes, and a force
-   command brakes as guard.h says; then `safe` is set. After ZERO the command is zero at once, with `safe`. [rt] */
+   farther than a contact reaches are skipped. Always fills command; trace may be NULL. Points of one id whose normals
+   differ by less than 15 deg are one contact, the deepest. A contact goes on at the surface of its id nearest to its
+   last point, within R_r; if no id fits, at the nearest one with the same normal within 15 deg. Row INPUT of the fault
+   table: a number that isn't finite or possible (sense.h), a normal whose length isn't 1 within 1e-6, more than
+   ETHD_SURFACES_MAX surfaces, an unknown material. Returns as ethd_control_step does (ETHD_E_...). After a row whose
+   reaction is STOP, a velocity command goes to zero with `acceleration`, without a limit of time, and a force command
+   brakes as guard.h says; then `safe` is set. After ZERO the command is zero at once, with `safe`. [rt] */
 ETHD_API ethd_status ethd_space_step(ethd_space *space, const ethd_space_sense *sense, const ethd_surface *surfaces,
                                      uint32_t count, ethd_space_command *command, ethd_space_trace *trace) ETHD_RT;
 

@@ -1,5 +1,5 @@
-/* What of the virtual world is near the end effector: points of surfaces, handed to the controller by whoever knows the
-   world, and what surfaces are made of. Links from libethd.
+/* Surfaces of the virtual world near the end effector, which the application gives to the controller, and their
+   materials. Links from libethd.
 
           X        n        P = point      n.(P - X): distance along n, < 0 behind the surface
           o ------------->|/////////

@@ -6,8 +6,8 @@
 #include "core/rows.h"
 #include "fp_mode.h"
 
-/* Returns the replaced setup's scene in this place if nothing uses it any more; one that was in two places is returned
-   for the first only. */
+/* Returns the replaced setup's scene of this place if it is no longer used; a scene of two places is returned only for
+   the first. */
 static const ethd_scene *released(const ethd_setup *from, const ethd_setup *now, int place) {
   const ethd_scene *scene = ethd__place_scene(from, place);
   for (int i = 0; i < ETHD__PLACES; i++)
@@ -15,7 +15,7 @@ static const ethd_scene *released(const ethd_setup *from, const ethd_setup *now,
   return scene;
 }
 
-/* Hands the old scenes back and lets [main] post again, at the end of the tick, which needs both plans till then. */
+/* Returns the old scenes and lets [main] post again, at the end of the tick, since the tick needs both plans. */
 static void give_back(ethd_control *control, int64_t tick, const ethd__plan *from) {
   const ethd_setup *now = &control->plans[control->mail.ruling].setup;
   ethd__mail *mail = &control->mail;
@@ -44,7 +44,7 @@ static ethd_status finish(const ethd__tick *t, ethd_command *command) {
   const ethd_guard_state *guard = &t->state->guard;
   command->torque[0] = out->tau[0];
   command->torque[1] = out->tau[1];
-  /* A stop may still brake, also after ticks of zero torque; a device may disable where `safe` is set. */
+  /* A stop may still brake, also after ticks of zero torque; with `safe` set a device may disable. */
   const bool stops = guard->stopping && !guard->stopped;
   command->safe = out->fault != ETHD_FAULT_NONE && !stops && out->tau[0] == 0 && out->tau[1] == 0;
   command->reserved = 0;

@@ -5,8 +5,8 @@
 #include "control/controller.h"
 #include "error.h"
 
-/* Makes a plan that may rule, and refuses a stop that is over before full torque can have braked the device. That isn't
-   left to ethd_setup_check, because a device adds its mass and its limits to what a configuration says. */
+/* Makes a plan, and refuses a stop_time in which full torque can't brake the device. ethd_setup_check can't refuse it,
+   because a device adds its mass and its limits to the configuration's. */
 static ethd_status prepare(const ethd_setup *setup, ethd__plan *out, ethd_error *error) {
   ethd_status status = ethd__plan_prepare(setup, out, error);
   if (status < 0) return status;

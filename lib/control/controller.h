@@ -1,4 +1,4 @@
-/* The controller's own memory: two plans, the state, a copy of it for rehearsals and swaps, and what crosses threads. */
+/* The controller's memory: two plans, the state, a copy of it for rehearsals and swaps, data between threads. */
 #ifndef ETHD__CONTROL_CONTROLLER_H
 #define ETHD__CONTROL_CONTROLLER_H
 

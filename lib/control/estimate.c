@@ -11,8 +11,8 @@ static bool is_finite(double v) { return v - v == 0; }
 
 /* ---- ring ---- */
 
-/* An enormous torque, which an estimator may take as its input, must not spoil its state for good: a speed that no
-   joint can have, or NaN, begins it anew. */
+/* An enormous torque, which some estimators use as input, must not spoil the state for good: an impossible speed, or
+   NaN, restarts the estimator. */
 static double joint_speed(const ethd__tick *t, double dt, int i) {
   ethd_velocity_state *s = &t->state->velocity[i];
   double speed = ethd__velocity_step(&t->plan->velocity, s, t->sense->q[i], t->state->guard.last[i], dt);
@@ -29,14 +29,14 @@ static void remember(ethd__state *state, int64_t time_ns, ethd_vec x) {
 /* Returns b - a in s, for any a <= b. */
 static double seconds(int64_t a, int64_t b) { return 1e-9 * (double)((uint64_t)b - (uint64_t)a); }
 
-#define ROUNDED 1e-3 /* periods: a stamp that is off by less is a whole tick's */
-#define LEAST 0.1    /* periods: samples nearer to each other say little of a speed */
+#define ROUNDED 1e-3 /* periods: a stamp that differs by less counts as a whole tick's */
+#define LEAST 0.1    /* periods: samples closer than this give no good speed */
 #define GAP 0.05     /* s: no exchange of a bus is longer */
 
-/* Returns the time from the last joint sample to this one, s, by their stamps. A bus that isn't in step with the ticks
-   gives samples whose spacing varies, though each comes at a tick: by the ticks' time the speed would seem to rise and
-   fall, also to a stop. Where the stamps differ by more than limits.gap from the ticks' time, or don't rise, their
-   clock is wrong, and the ticks' time counts. */
+/* Returns the time from the last joint sample to this one, s, by their stamps. A bus that isn't synchronous with the
+   ticks gives samples whose spacing varies, although each arrives at a tick: with the ticks' time the speed would seem
+   to vary, which would disturb a stop. If the stamps differ by more than limits.gap from the ticks' time, or don't
+   rise, their clock is wrong, and the ticks' time counts. */
 static double sample_spacing(const ethd__tick *t) {
   const double period = t->plan->setup.period;
   const uint64_t passed = (uint64_t)t->sense->time_ns - (uint64_t)t->state->velocity_ns;
@@ -47,8 +47,8 @@ static double sample_spacing(const ethd__tick *t) {
   return used ? stamped : t->dt;
 }
 
-/* Returns the time from joint i's last sample to this one, s, where a sample lies `age` before its sense's instant. A
-   sample that comes again has the ticks' time, as in sample_spacing. */
+/* Returns the time from joint i's last sample to this one, s; a sample was taken `age` before its sense's instant. A
+   repeated sample has the ticks' time, as in sample_spacing. */
 static double own_spacing(const ethd__tick *t, double dt, int i) {
   double *last = &t->state->age[i], now = t->sense->have & ETHD_HAVE_AGE ? t->sense->age[i] : 0;
   const double own = dt + (*last - now);
@@ -71,10 +71,10 @@ static void joint_angles(const ethd__tick *t, const double qd[2], double q[2]) {
   for (int i = 0; i < 2 && t->sense->have & ETHD_HAVE_AGE; i++) q[i] += qd[i] * t->sense->age[i];
 }
 
-/* Returns the instant `s` seconds before another one; wraps round like the clock. */
+/* Returns the instant `s` seconds before `instant`; it wraps round like the clock. */
 static int64_t before(int64_t instant, double s) { return (int64_t)((uint64_t)instant - (uint64_t)(int64_t)(1e9 * s)); }
 
-/* Returns where the ring was at an earlier instant: linear between ticks, constant before the history. */
+/* Returns the ring's position at an earlier instant: linear between ticks, constant before the history. */
 static ethd_vec ring_at(const ethd__state *state, int64_t time_ns) {
   uint64_t now = state->remembered - 1;
   uint64_t oldest = now >= ETHD__HISTORY ? now - ETHD__HISTORY + 1 : 0;
@@ -91,7 +91,7 @@ static ethd_vec ring_at(const ethd__state *state, int64_t time_ns) {
 
 /* ---- the finger's readings ---- */
 
-/* Returns what the reading is relative to: where the ring stood when it was taken, as the filter's `reference` says. */
+/* Returns the position to which the reading is relative: the ring's at the instant of the filter's `reference`. */
 static ethd_vec reference(const ethd__tick *t) {
   if (t->plan->filter.reference == ETHD_REFERENCE_TICK) return t->ring.x;
   if (t->sense->have & ETHD_HAVE_RING) return ethd_vec_of(t->sense->ring);
@@ -118,7 +118,7 @@ static bool is_world(const ethd__tick *t) {
   return (t->sense->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD)) == (ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD);
 }
 
-/* Gives this tick's reading, relative to the ring, or in R_0 if it came in R_0; false: it isn't usable. */
+/* Gives this tick's reading, relative to the ring, or in R_0 if it was measured in R_0; false: it isn't usable. */
 static bool reading(const ethd__tick *t, ethd_vec *out) {
   if (t->sense->have & ETHD_HAVE_CENTRE) {
     *out = ethd_vec_of(t->sense->centre);
@@ -131,14 +131,14 @@ static bool reading(const ethd__tick *t, ethd_vec *out) {
   return true;
 }
 
-/* Returns true if the reading isn't from the future and isn't the last one again. Stamps are compared because ages are
-   sums of periods, whose rounding could make the same reading look newer. */
+/* Returns true if the reading isn't from the future and isn't the last one again. It compares stamps because ages are
+   sums of periods, whose rounding could make the same reading seem newer. */
 static bool is_new(const ethd__tick *t) {
   return t->sense->sample_ns <= t->sense->time_ns &&
          (t->state->filter.used == 0 || t->sense->sample_ns != t->state->reading_ns);
 }
 
-/* Returns whether a reading's noise is a possible number; NaN isn't. */
+/* Returns whether a reading's noise is possible; NaN isn't. */
 static bool noise_is_possible(const ethd__tick *t) {
   return t->sense->finger_noise >= 0 && t->sense->finger_noise <= ETHD_SENSE_LENGTH_MAX;
 }
@@ -180,8 +180,8 @@ static void correct(const ethd__tick *t) {
 
 /* ---- the finger ---- */
 
-/* The age counts from the sample's instant, so it includes the reading's latency. The half nanosecond makes a reading
-   that is exactly as old as the limit count as young enough. */
+/* The age counts from the sample's instant, so it includes the reading's latency. The half nanosecond accepts a reading
+   that is exactly as old as the limit. */
 static void watch(const ethd__tick *t) {
   ethd__state *state = t->state;
   const double limits[2] = {t->plan->setup.limits.finger_age, t->plan->setup.limits.finger_lost};
@@ -200,7 +200,7 @@ static void filter(const ethd__tick *t) {
   if (t->plan->watches_finger && s->used > 0) watch(t);
 }
 
-/* A finger that was never seen is taken to be in the ring's centre and to move with it: there is nothing to follow. */
+/* A finger that was never seen counts as in the ring's centre and moving with it, so that the ring follows nothing. */
 static void finger(ethd__tick *t) {
   t->finger = t->ring;
   if (t->sense->have & ETHD_HAVE_FINGER) {

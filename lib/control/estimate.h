@@ -3,7 +3,7 @@
 
 #include "control/context.h"
 
-/* Works out from the sense where ring and finger are: joint speeds, pose, ring, finger. [rt] */
+/* Estimates joint speeds, pose, ring and finger from the sense. [rt] */
 void ethd__estimate(ethd__tick *t) ETHD_RT;
 
 #endif

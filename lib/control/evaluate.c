@@ -2,7 +2,7 @@
 
    1. Ring and finger are estimated from the sense (estimate.c).
    2. The contacts give beta, the sums of their forces, fe (with feed) and fd (damping), and a lead (near.c).
-   3. The tracking law turns the finger's place and velocity relative to the ring, with the lead, into tau_t.
+   3. The tracking law computes tau_t from the finger's position and velocity relative to the ring, with the lead.
    4. While the finger isn't seen, beta fades (core/finger.c). */
 #include "control/evaluate.h"
 
@@ -10,7 +10,7 @@
 #include "control/near.h"
 #include "core/rows.h"
 
-/* Asks a law without a torque of its own for its force. */
+/* Computes the torque from the force of a law that has no torque function. */
 static ethd_status follow(const ethd__tick *t, const ethd_tracking_in *in, double tau[2]) {
   const ethd__core_plan *plan = &t->plan->core;
   const ethd_follow_in space = {.eps_x = {in->eps_x.x, in->eps_x.y, 0},
@@ -23,7 +23,7 @@ static ethd_status follow(const ethd__tick *t, const ethd_tracking_in *in, doubl
   return status;
 }
 
-/* Asks the tracking law for its torque before beta, tau. */
+/* Calls the tracking law for its torque before beta, tau. */
 static bool track(const ethd__tick *t, double tau[2]) {
   const ethd__core_plan *plan = &t->plan->core;
   ethd__core *core = &t->state->core;

@@ -3,7 +3,7 @@
 
 #include "control/context.h"
 
-/* Works out the torque of the laws, trace->tau_raw, from estimates, contacts and tracking. Returns false if a law
+/* Computes the torque of the laws, trace->tau_raw, from estimates, contacts and tracking. Returns false if a law
    failed, which is noted. [rt] */
 bool ethd__evaluate(ethd__tick *t) ETHD_RT;
 

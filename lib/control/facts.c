@@ -1,23 +1,23 @@
-/* Works out what the device can do along a contact's normal, from the pose, the links' inertias and the limits.
+/* Computes the device's ability along a contact's normal from the pose, the links' inertias and the limits.
 
      g = J^T n            torques of a unit force along n      w = J^-1 n     joint speeds of a unit speed along it
      m = 1 / (h^T M^-1 h)      effective mass: h = g in the links' absolute angles, M = diag(m_i L_i^2)
-     F = min_i tau_i / |g_i|   the largest force that each motor's limit leaves
-     f_c sum_i |w_i| L_i       friction of the joints that take part */
+     F = min_i tau_i / |g_i|   the largest force within each motor's limit
+     f_c sum_i |w_i| L_i       friction of the joints that move */
 #include "control/facts.h"
 
 #include "guard/parts.h"
 
-/* Returns the lesser of two numbers; NaN, for something that isn't known, stays if it is b. */
+/* Returns the lesser of two numbers; a b that is NaN, for unknown, is returned. */
 static double least(double a, double b) { return a < b ? a : b; }
 
-/* Gives the joints' torques as they act on the links' absolute angles: a serial arm's second motor sits on link 1. */
+/* Converts the joints' torques to torques on the links' absolute angles: a serial arm's second motor is on link 1. */
 static void on_links(const ethd__plan *plan, const double tau[2], double out[2]) {
   out[0] = plan->setup.arm.mechanism == ETHD_ARM_SERIAL ? tau[0] - tau[1] : tau[0];
   out[1] = tau[1];
 }
 
-/* Returns the most torque against g that its limits leave joint i at this tick, Nm. */
+/* Returns the largest torque against g that the limits of joint i allow at this tick, Nm. */
 static double room(const ethd__tick *t, int i, double g) {
   const ethd_limits *limits = &t->plan->setup.limits;
   const ethd_guard_state *guard = &t->state->guard;
@@ -30,8 +30,8 @@ static double room(const ethd__tick *t, int i, double g) {
   return most;
 }
 
-/* Returns how long ago the finger was where its estimate has it: a filter that doesn't compensate the readings' age
-   shows what they showed. */
+/* Returns the age of the finger's estimated position: a filter that doesn't compensate the readings' age gives a
+   position as old as the readings. */
 static double finger_age(const ethd__tick *t) {
   const ethd__state *state = t->state;
   if (t->sense->have & ETHD_HAVE_FINGER) return 0;

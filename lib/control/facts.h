@@ -3,7 +3,7 @@
 
 #include "control/context.h"
 
-/* Works out what a law that looks ahead gets to know of the device along the contact's n. [rt] */
+/* Computes the facts about the device along the contact's n, for a law that looks ahead. [rt] */
 void ethd__facts(const ethd__tick *t, const ethd_contact *c, ethd_facts *out) ETHD_RT;
 
 #endif

@@ -1,4 +1,4 @@
-/* From the laws' torque to the commanded one: the guard, and between its two halves the fades (core/fade.h):
+/* Makes the commanded torque from the laws': the guard, with the fades between its two halves (core/fade.h):
 
      tau_raw -> guard's stop, wall and limits -> fades -> guard's rate, and its limits again -> tau */
 #include "control/limit.h"
@@ -17,7 +17,7 @@ void ethd__limit(ethd__tick *t) {
                                     .estimated = !(t->sense->have & ETHD_HAVE_DQ),
                                     .dt = t->dt};
   ethd__guard_faded faded;
-  if (t->soft) memset(guard->last, 0, sizeof guard->last); /* from zero, also where a stop still braked */
+  if (t->soft) memset(guard->last, 0, sizeof guard->last); /* from zero, even if a stop was still braking */
   memcpy(torque, t->trace->tau_raw, sizeof t->trace->tau);
   int32_t bits = ethd__guard_limit(&plan->setup.limits, &plan->device, guard, &motion, torque);
   const bool stops = ethd__guard_stops(guard, bits) || bits & ETHD_GUARD_FINITE;

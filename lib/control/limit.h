@@ -3,7 +3,7 @@
 
 #include "control/context.h"
 
-/* Limits the laws' torque, trace->tau_raw, to what is commanded, trace->tau, and sets trace->guard. [rt] */
+/* Makes the commanded torque, trace->tau, from the laws' torque, trace->tau_raw, and sets trace->guard. [rt] */
 void ethd__limit(ethd__tick *t) ETHD_RT;
 
 #endif

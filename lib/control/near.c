@@ -1,21 +1,21 @@
-/* The scenes give the points near the ring, and where contacts go on that no near point continues. The core works out
-   what they lead to.
+/* The scenes give the points near the ring, and points for the contacts that no near point continues. The core computes
+   the contacts from them.
 
-   The plane is z = 0 of the core's space, and its normals have z = -0: a sum keeps its bits, also those of -0, when the
-   product of such a z is added. */
+   The plane is z = 0 of the core's space, and its normals have z = -0: adding a product of such a z doesn't change the
+   bits of a sum, not even of -0. */
 #include "control/near.h"
 
 #include "control/facts.h"
 #include "core/contacts.h"
 
-#define TOUCHES (ETHD_CONTACTS_MAX + 8) /* the most touches that are looked at in one place, the deepest */
+#define TOUCHES (ETHD_CONTACTS_MAX + 8) /* the most touches of one place that are used, the deepest */
 
 _Static_assert(ETHD__PLACES *TOUCHES + ETHD_CONTACTS_MAX <= ETHD__CANDIDATES, "room");
 
 static ethd_vec3 flat(ethd_vec a) { return (ethd_vec3){a.x, a.y, 0}; }
 static ethd_vec3 flat_normal(ethd_vec n) { return (ethd_vec3){n.x, n.y, -0.0}; }
 
-/* A place as this tick sees it: the ring's centre x is in the place's frame. */
+/* A place at this tick, with the ring's centre x in the place's frame. */
 typedef struct view {
   const ethd_scene *scene;
   int place;
@@ -42,7 +42,7 @@ static void append(const ethd__tick *t, ethd__candidates *c, const view *from, c
   k->v = flat(ethd__frame_velocity(&from->frame, point));
 }
 
-/* Returns true if an earlier touch, which is deeper, is on the same object and faces the same way. */
+/* Returns true if an earlier touch, which is deeper, is on the same object and has the same normal within 15 deg. */
 static bool is_same_face(const ethd_touch *touches, int i) {
   for (int k = 0; k < i; k++)
     if (touches[k].object == touches[i].object && ethd_vec_dot(touches[k].n, touches[i].n) > ETHD__SAME_WAY)
@@ -56,7 +56,7 @@ static bool is_live(const ethd__core *core, unsigned in_use, int place) {
   return false;
 }
 
-/* Asks a scene for its touches, unless the ring can't have come near anything since it was last asked. */
+/* Queries a scene for its touches, unless the ring can't have come near any object since the last query. */
 static void ask(ethd__tick *t, const view *from, double range, ethd__candidates *c) {
   ethd_touch touches[TOUCHES];
   ethd__place *p = &t->state->places[from->place];
@@ -80,7 +80,7 @@ static int index_of(const ethd__candidates *c, const ethd_touch *touch, int plac
 }
 
 /* Continues a contact that no near touch matches, because it jumped or is out of range: the scene finds the local
-   minimum nearest to it. If that one isn't a candidate, the contact goes on until its state is transparent. */
+   minimum nearest to it. If that isn't a candidate yet, the contact continues there until its state is transparent. */
 static void follow(const ethd__tick *t, const view *from, int i, ethd__candidates *c) {
   const ethd__slot *slot = &t->state->core.slots[i];
   ethd_touch touch;
@@ -93,7 +93,7 @@ static void follow(const ethd__tick *t, const view *from, int i, ethd__candidate
   }
 }
 
-/* Gives the ring as seen from a place. The scene that stands still needs no frame, since it is in R_0. */
+/* Transforms the ring into a place's frame. The scene that stands still needs no frame, since it is in R_0. */
 static void look_from(const ethd__tick *t, int place, view *out) {
   out->scene = ethd__place_scene(&t->plan->setup, place);
   out->place = place;

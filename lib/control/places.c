@@ -2,7 +2,7 @@
 
 #include "ethd/maths.h"
 
-#define MARGIN 1e-9 /* m: more than rounding changes a distance; what matters in a scene is far coarser */
+#define MARGIN 1e-9 /* m: bound on the rounding error of a distance; the details of scenes are far coarser */
 
 ethd__frame ethd__frame_of(const ethd__place *p) {
   ethd__frame f = {p->pose.x, p->pose.v, 1, 0, p->pose.rate};

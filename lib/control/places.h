@@ -1,7 +1,7 @@
-/* Where objects are: the scene that stands still, and bodies that move as the sense says.
+/* Places of objects: the scene that stands still, and bodies, whose motion the sense gives.
 
-   A place is a scene with a frame. The ring is seen from within that frame, so scenes are never moved, and what is
-   known of the distance to a scene holds for bodies as it does for the scene that stands still. */
+   A place is a scene with a frame. The ring's position is transformed into that frame, so scenes never move, and a
+   known distance to a scene serves bodies as it serves the scene that stands still. */
 #ifndef ETHD__CONTROL_PLACES_H
 #define ETHD__CONTROL_PLACES_H
 
@@ -19,7 +19,7 @@ typedef struct ethd__frame {
 
 ethd__frame ethd__frame_of(const ethd__place *place) ETHD_RT;
 
-/* Turn points and directions into the frame (in) and out of it (turn, out). */
+/* Transform points into the frame (in) and out of it (out), and directions out of it (turn). */
 static inline ethd_vec ethd__frame_in(const ethd__frame *f, ethd_vec x) ETHD_RT {
   ethd_vec r = ethd_vec_sub(x, f->x);
   return (ethd_vec){f->cosine * r.x + f->sine * r.y, f->cosine * r.y - f->sine * r.x};
@@ -48,14 +48,14 @@ static inline ethd__body_pose ethd__body_pose_of(const ethd_sense *sense, int i)
 /* Takes the new poses from the sense. */
 void ethd__places_take(ethd__state *state, const ethd_sense *sense) ETHD_RT;
 
-/* Forgets how far the place's scene was. */
+/* Forgets the distance to the place's scene. */
 void ethd__place_forget(ethd__place *place) ETHD_RT;
 
-/* Returns true while the ring, now at x in the place's frame, can't be within `range` of anything because it hasn't
-   travelled far enough since the clearance was found. Reads nothing of the scene. */
+/* Returns true while the ring, now at x in the place's frame, can't be within `range` of any object because it hasn't
+   travelled far enough since the clearance was found. Doesn't read the scene. */
 bool ethd__place_is_far(const ethd__place *place, ethd_vec x, double range) ETHD_RT;
 
-/* Finds the clearance at x, where nothing is within range. */
+/* Finds the clearance at x, which has no object within range. */
 void ethd__place_clear(ethd__place *place, const ethd_scene *scene, ethd_vec x) ETHD_RT;
 
 #endif

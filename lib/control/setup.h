@@ -7,7 +7,7 @@
 /* Refuses a setup that ethd_setup_default didn't make (ETHD_E_ARGUMENT), or made for other headers (ETHD_E_SIZE). */
 ethd_status ethd__setup_made(const void *setup, ethd_error *error);
 
-/* Gives a setup that is all zero but for its cookie its defaults. */
+/* Fills a setup that is zero, except for its cookie, with the defaults. */
 void ethd__setup_defaults(ethd_setup *setup);
 
 #define ETHD__D_BETA_MIN 1e-5 /* m: the least R_r - R_f,max */

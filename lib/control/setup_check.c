@@ -39,7 +39,7 @@ static ethd_status check_fields(const ethd_setup *s, ethd_error *error) {
   return ETHD_OK;
 }
 
-/* Makes the contact law's parameters on one material: the setup's, replaced by the material's own where it has some. */
+/* Makes the contact law's parameters for one material: the setup's, replaced by those that the material gives. */
 static ethd_status prepare_material(const ethd_setup *s, const ethd_material *m, double *p, ethd_error *error) {
   const ethd_law *law = &s->contact->law;
   memcpy(p, s->contact_p, sizeof s->contact_p);
@@ -73,7 +73,7 @@ static void prepare_lags(const ethd_setup *s, ethd__plan *out) {
   }
 }
 
-/* Refuses a pruned scene that may lack what this arm meets. A body can come from anywhere, so it must not be pruned. */
+/* Refuses a pruned scene that may lack objects within this arm's reach, and any pruned body, since bodies move. */
 static ethd_status check_scene(const ethd_setup *s, int place, ethd_error *error) {
   const ethd_scene *scene = ethd__place_scene(s, place);
   double inner = 0, outer = (double)INFINITY;
@@ -89,9 +89,9 @@ static void prepare_ahead(const ethd_setup *s, ethd__plan *out) {
   for (int i = 0; i < 2; i++) out->mobility[i] = 1 / (s->dynamics.mass[i] * links[i] * links[i]);
 }
 
-#define DAMPING_MAX 20.0 /* Ns/m: half of what the paper's wall has */
+#define DAMPING_MAX 20.0 /* Ns/m: about half of the paper's wall damping */
 
-/* Works out how the guard brakes the device. */
+/* Prepares the guard's model of the device. */
 static void prepare_guard(const ethd_setup *s, ethd__plan *out) {
   out->lag = ethd_velocity_lag(&out->velocity);
   out->device = ethd_guard_device_of(&s->arm, &s->dynamics, s->limits.gap, s->period, out->lag);
@@ -101,7 +101,7 @@ static void prepare_guard(const ethd_setup *s, ethd__plan *out) {
   out->core.damping_max = fmin(DAMPING_MAX, out->core.brake);
 }
 
-/* Returns true for a limit that the guard looks at in every tick, or that has a `watches_` of its own. */
+/* Returns true for a limit that the guard checks in every tick, or that has its own flag `watches_...`. */
 static bool is_common(const ethd_limit *row) {
   static const size_t common[] = {
       offsetof(ethd_limits, torque),     offsetof(ethd_limits, torque_rate), offsetof(ethd_limits, speed),
@@ -113,8 +113,8 @@ static bool is_common(const ethd_limit *row) {
   return false;
 }
 
-/* Returns true if any other limit is set. The tick then looks at what note_rare_limits and its reach check enforce. A
-   new limit counts as rare, so that it can't be forgotten here. */
+/* Returns true if any other limit is set. The tick then runs note_rare_limits and its check of the reach. A new limit
+   counts as rare, so that it can't be forgotten here. */
 static bool has_rare_limits(const ethd_limits *limits) {
   ethd_limits own = *limits, none = ethd_limits_none();
   for (const ethd_limit *row = ethd_limit_rows; row < ethd_limit_rows + ETHD_LIMITS; row++)
@@ -123,7 +123,7 @@ static bool has_rare_limits(const ethd_limits *limits) {
   return false;
 }
 
-/* A law that follows only by velocity moves no arm that takes torques. */
+/* A law that has only velocities can't move an arm commanded by torques. */
 static ethd_status check_tracking(const ethd_setup *s, ethd_error *error) {
   if (s->tracking->step || ETHD_TRACKING_HAS(s->tracking, force)) return ETHD_OK;
   return ethd__error(error, ETHD_E_ARGUMENT, "tracking.law (it has velocities only)");

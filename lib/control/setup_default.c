@@ -5,7 +5,7 @@
 #include "ethd/control.h"
 #include "fp_mode.h"
 
-/* Returns how far the law looks ahead at most, from the ring's centre, m; 0: it doesn't. */
+/* Returns the largest distance from the ring's centre, m, to which the law looks ahead; 0: it doesn't. */
 static double ahead(const ethd_setup *s) {
   if (!s->transition || !ETHD_LAW_HAS(s->transition, range)) return 0;
   double range = s->transition->range(s->transition_p, (double)INFINITY);
@@ -20,7 +20,7 @@ ETHD__FP_APART static double range_of(const ethd_setup *s) {
 
 double ethd_setup_range(const ethd_setup *s) { ETHD__FP_RETURN(double, range_of(s)); }
 
-/* Chooses nothing where there is nothing to choose: then ethd_setup_check refuses the setup. */
+/* Without params it sets nothing: then ethd_setup_check refuses the setup. */
 static void method_defaults(const ethd_method *methods, uint32_t count, uint32_t method, double *p) {
   const ethd_method chosen = method < count ? methods[method] : (ethd_method){0};
   ethd__setup_values(chosen.params, chosen.param_count, p);

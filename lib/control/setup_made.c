@@ -1,11 +1,11 @@
-/* Which setups are this library's, and which programs. */
+/* Recognises setups, and programs compiled with other headers. */
 #include <string.h>
 
 #include "control/setup.h"
 #include "error.h"
 
 #define COOKIE 0x45544844u
-#define SKEWED 0x45544900u /* and up: the setup of a program with another size of this struct, in ETHD_SIZED's order */
+#define SKEWED 0x45544900u /* + i: the setup of a program with another size of struct i of ETHD_SIZED */
 
 #define NAME(name) "ethd_" #name,
 static const char *const names[] = {ETHD_SIZED(NAME)};
@@ -17,8 +17,8 @@ static uint32_t size_of(const ethd_sizes *sizes, uint32_t i) {
   return size;
 }
 
-/* Returns a struct that has another size there than here, the innermost first; COUNT: none. The list there may be
-   shorter or longer than this one. */
+/* Returns a struct whose size differs between program and library, the innermost first; COUNT: none. The program's list
+   may be shorter or longer than this one. */
 static uint32_t skewed(const ethd_sizes *there) {
   const ethd_sizes here = ethd_sizes_here();
   const uint32_t count = there->sizes / (uint32_t)sizeof there->sizes;

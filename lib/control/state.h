@@ -5,7 +5,7 @@
 #include "control/plan.h"
 #include "core/state.h"
 
-/* A body's frame in R_0 and how it moves, laid out as the sense's six numbers of a body. */
+/* A body's frame in R_0 and its motion, in the layout of the sense's six numbers of a body. */
 typedef struct ethd__body_pose {
   ethd_vec x;   /* origin, m */
   double angle; /* rad */
@@ -13,9 +13,9 @@ typedef struct ethd__body_pose {
   double rate;  /* rad/s */
 } ethd__body_pose;
 
-/* A place, and what is known of the ring's distance to it. */
+/* A place, and the known distance of the ring to it. */
 typedef struct ethd__place {
-  ethd__body_pose pose; /* zeros for what stands still */
+  ethd__body_pose pose; /* zero for the scene that stands still */
   ethd_vec at;          /* the ring's centre in the place's frame when the clearance was last found */
   double clearance;     /* distance from there to the nearest object, m; negative: not known */
   ethd_scene_hint hint;
@@ -32,7 +32,7 @@ typedef struct ethd__state {
   /* estimates */
   ethd_velocity_state velocity[2];
   int64_t velocity_ns; /* instant of their last sample */
-  double age[2];       /* s by which each joint's sample was older than that */
+  double age[2];       /* s: age of each joint's sample at that instant */
   ethd_filter_state filter;
   int64_t reading_ns;   /* stamp of the reading that was used last */
   double reading_age;   /* s: how old it was when it was used */
@@ -43,7 +43,7 @@ typedef struct ethd__state {
     int64_t time_ns;
     ethd_vec x;
   } history[ETHD__HISTORY];
-  uint64_t remembered; /* how many positions were ever put there; a tick without measurement adds none */
+  uint64_t remembered; /* number of positions ever stored there; a tick without measurement adds none */
 } ethd__state;
 
 #endif

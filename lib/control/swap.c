@@ -1,5 +1,5 @@
-/* A swap: the new plan goes on with the state, and the old plan's torque is worked out once more, from which limit.c
-   fades. */
+/* A swap: the new plan continues with the state, and the old plan's torque is computed once more, since limit.c fades
+   from it. */
 #include "control/swap.h"
 
 #include "control/estimate.h"
@@ -49,8 +49,8 @@ void ethd__swap_state(const ethd__plan *from, const ethd__plan *to, ethd__state 
 
 /* ---- the tick of a swap ---- */
 
-/* Works out what the old plan would command, on a copy of the state, so that this run leaves no mark in the state on
-   which the new plan goes on. Returns false if a law failed, which is then noted in the state too. */
+/* Computes the old plan's command on a copy of the state, so that this run doesn't change the state with which the new
+   plan continues. Returns false if a law failed, which is then noted in the state too. */
 static bool evaluate_old(ethd__tick *t, double torque[2]) {
   memcpy(t->scratch, t->state, sizeof *t->scratch);
   ethd__tick old = *t;

@@ -1,13 +1,13 @@
-/* One tick: from what the device measured to the torque that it is commanded.
+/* One tick: from the device's measurements to the commanded torque.
 
-   1. What is already wrong is noted as rows of the fault table: impossible numbers, clock, joints, heat, the step
-      budget, and what device and loop reported.
+   1. Present faults are noted as rows of the fault table: impossible numbers, clock, joints, heat, the step budget, and
+      the reports of device and loop.
    2. Moving bodies take their new poses.
-   3. The laws work out the torque (evaluate.c). If a noted row forbids a torque, or a fault is latched, the tick only
-      estimates, so that the trace is right and a later tick can go on from there.
-   4. At a swap the old plan's torque is worked out, too (swap.c).
-   5. The guard bounds the torque, stops the ring, or lets it go. The torque fades from the old plan's to the new
-      one's, and from zero after an acknowledged fault (limit.c).
+   3. The laws compute the torque (evaluate.c). If a noted row forbids a torque, or a fault is latched, the tick only
+      estimates, so that the trace is right and a later tick can continue.
+   4. At a swap the old plan's torque is computed, too (swap.c).
+   5. The guard bounds the torque, stops the ring, or removes the torque. The torque fades from the old plan's to the
+      new plan's, and from zero after an acknowledged fault (limit.c).
    6. The noted rows decide what latches, and the trace shows how the tick ended (rows.c).
 
    When the measurement is impossible there are no steps 2 to 5, and the torque is zero. */
@@ -26,7 +26,7 @@
 
 static int64_t at_most(int64_t periods) { return periods < GAP_MAX ? periods : GAP_MAX; }
 
-/* ---- what is already wrong ---- */
+/* ---- present faults ---- */
 
 /* Returns false for NaN too. */
 static bool within(const double v[2], double most) { return fabs(v[0]) <= most && fabs(v[1]) <= most; }
@@ -46,7 +46,7 @@ static bool bodies_are_possible(const ethd_sense *s) {
   return true;
 }
 
-/* Does what the next function does for what a device says of its last command and of its joints' samples. Few do. */
+/* As the next function, for a device's report of its last command and of its samples' ages. Few devices report them. */
 static bool report_is_possible(const ethd_sense *s, double *which) {
   *which = ETHD_HAVE_COMMANDED;
   if ((s->have & ETHD_HAVE_COMMANDED) && !within(s->commanded, ETHD_SENSE_FORCE_MAX)) return false;
@@ -54,7 +54,7 @@ static bool report_is_possible(const ethd_sense *s, double *which) {
   return !(s->have & ETHD_HAVE_AGE) || (within(s->age, ETHD_SENSE_AGE_MAX) && s->age[0] >= 0 && s->age[1] >= 0);
 }
 
-/* Returns true if every number that will be used is possible; else *which is the ETHD_HAVE_* bit of the one that isn't,
+/* Returns true if every number that will be used is possible; else *which is the ETHD_HAVE_* bit of the impossible one,
    0 for q. */
 static bool input_is_possible(const ethd_sense *s, double *which) {
   *which = 0;
@@ -80,9 +80,9 @@ static bool reach_is_good(const double reach[2], ethd_vec x) {
   return r >= reach[0] && r <= reach[1];
 }
 
-#define HOT 1.05 /* times the heat that the nominal torque leads to */
+#define HOT 1.05 /* times the final heat under the nominal torque */
 
-/* Notes a motor that is too hot. The torque since the last tick was held under the limits that ruled then. */
+/* Notes a motor that is too hot. The torque since the last tick was held under the limits of that tick. */
 static void note_heat(ethd__tick *t) {
   const ethd_limits *held = t->from ? &t->from->setup.limits : &t->plan->setup.limits;
   if (held->nominal_torque < (double)INFINITY &&
@@ -173,7 +173,7 @@ void ethd__tick_run(ethd__tick *t) {
   if (measured)
     guard(t);
   else
-    memset(state->guard.last, 0, sizeof state->guard.last); /* that is what was commanded */
+    memset(state->guard.last, 0, sizeof state->guard.last); /* zero was commanded */
   if (t->trace->guard || state->core.fault || ethd__rows_any(&state->core.met.rows)) {
     if (t->trace->guard) ethd__note_guard(&state->core, t->trace->guard, state->guard.cut);
     t->trace->fault = ethd__judge(&state->core, t->plan->core.latches, halt_of(state), t->periods);

@@ -5,7 +5,7 @@ double ethd__candidates_range(const ethd__core_tick *t) {
   return t->plan->radius + (behind > t->near ? behind : t->near);
 }
 
-/* ---- which point continues which contact ---- */
+/* ---- points that continue contacts ---- */
 
 /* Finds the closest pair of a point and an open contact on the same object, at most `limit` m apart. Returns the
    point's index, -1 if there is no such pair; *slot is the contact's. */
@@ -27,7 +27,7 @@ static int closest(const ethd__core *core, unsigned open, double limit, const et
   return best;
 }
 
-/* A surface of a new scene counts as the old scene's if this tick's points on both differ by no more than this. */
+/* Surfaces of the old and the new scene are the same if this tick's points on them differ by no more than this. */
 #define SAME_PLACE 1e-6 /* m, and rad of the normals */
 
 static bool continues(const ethd__slot *slot, const ethd__candidate *k) {
@@ -37,8 +37,8 @@ static bool continues(const ethd__slot *slot, const ethd__candidate *k) {
          ethd_vec3_norm(ethd_vec3_sub(ethd_vec3_scale(side, k->n), slot->past.n)) <= SAME_PLACE;
 }
 
-/* Contacts whose scene was replaced go on if the new scene has the same surface, whatever its number there, and end if
-   not. Returns the other contacts' slots. */
+/* Contacts whose scene was replaced continue if the new scene has the same surface, under any number, and end if not.
+   Returns the other contacts' slots. */
 static unsigned settle_orphans(ethd__core *core, ethd__candidates *c) {
   for (unsigned left = core->orphans & c->live; left; left &= left - 1) {
     int i = __builtin_ctz(left), k = 0;
@@ -65,7 +65,7 @@ unsigned ethd__candidates_match(const ethd__core_plan *plan, ethd__core *core, e
 
 /* ---- in order ---- */
 
-/* Keeps the side of a thin wall on which the contact began, until the effector has gone round an end. */
+/* Keeps the side of a thin wall on which the contact began, until the effector has moved round an end. */
 static void keep_side(ethd__candidate *k, const ethd__slot *slot) {
   if (slot->side == 0 || k->side != -slot->side) return;
   k->n = ethd_vec3_scale(-1, k->n);

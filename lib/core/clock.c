@@ -6,8 +6,8 @@
 
 static double since(int64_t now, int64_t then) { return 1e-9 * (double)(int64_t)((uint64_t)now - (uint64_t)then); }
 
-/* Returns true where clocks can be compared: not at the first two ticks that are checked, since a bus's first sample may
-   be older than the loop. */
+/* Returns true if clocks can be compared: not at the first two checked ticks, since a bus's first sample may be older
+   than the loop. */
 static bool compares(ethd__core *core) {
   ethd__clock *clock = &core->clock;
   const uint64_t tick = core->counters.ticks;
@@ -19,8 +19,8 @@ static bool compares(ethd__core *core) {
   return tick - clock->begun >= 2;
 }
 
-/* Returns true unless the clock steps by more than a gap beside the loop's time between two samples. A sample that comes
-   again counts with the next new one. */
+/* Returns true unless the clock's step between two samples differs from the loop's time by more than a gap. The time of
+   a repeated sample counts with the next new one. */
 static bool steps_well(ethd__clock *clock, int64_t now, double expected, double gap) {
   const double waited = expected + clock->waits, passed = since(now, clock->now_ns);
   clock->waits = passed == 0 ? waited : 0;
@@ -33,7 +33,7 @@ void ethd__clock_check(ethd__core *core, int64_t now, int64_t periods, double pe
   ethd__clock *clock = &core->clock;
   const double expected = (double)periods * period;
   const bool compared = compares(core), in_time = expected <= gap, steps = steps_well(clock, now, expected, gap);
-  /* a device that says itself that its feedback is old is late, and no fault of a clock */
+  /* if a device itself reports that its feedback is old, the clock isn't at fault */
   const bool told = core->met.rows.faults & ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD);
   clock->periods += periods;
   const double window = (double)clock->periods * period;

@@ -1,10 +1,10 @@
-/* What is touched, and what that does to the command.
+/* The contacts and their effect on the command.
 
    1. Contacts that no candidate continues end.
    2. Each candidate that could count, up to ETHD_CONTACTS_MAX of them, gets a slot: that of its contact, a free one, or
       the shallowest contact's.
-   3. The transition law rules: share of tracking (beta), share of the wall, offset, damping, feed, lead and speed. A
-      contact that doesn't count by its ruling gives its slot back.
+   3. The transition law gives its ruling: share of tracking (beta), share of the wall, offset, damping, feed, lead and
+      speed. A contact that doesn't count by its ruling frees its slot.
    4. The contact law gives the force of the wall at its offset, to which the passivity observer may add damping.
    5. The forces of all contacts are added up. The smallest beta counts, with the lead of its contact. */
 #include "core/contacts.h"
@@ -15,7 +15,7 @@
 
 /* ---- one contact ---- */
 
-/* A contact while it is worked out. */
+/* The intermediate results of one contact. */
 typedef struct contact_work {
   const ethd__candidate *candidate;
   ethd__slot *slot;
@@ -24,7 +24,7 @@ typedef struct contact_work {
   ethd_facts facts; /* for a law that looks ahead */
 } contact_work;
 
-/* Measures the contact at a candidate, all but its age. */
+/* Computes the contact of a candidate, except its age. */
 static ethd_contact measure(const ethd__core_tick *t, const ethd__candidate *k) {
   const ethd__core_plan *plan = t->plan;
   ethd_contact c;
@@ -51,7 +51,7 @@ static bool ruling_is_good(const ethd_ruling *r) {
          isfinite(r->argument);
 }
 
-/* Asks the transition law who rules. */
+/* Calls the transition law for its ruling. */
 static bool rule(const ethd__core_tick *t, contact_work *w) {
   ethd_ruling *r = &w->ruling;
   if (t->plan->range) {
@@ -88,12 +88,12 @@ static bool wall(const ethd__core_tick *t, const contact_work *w, double *force)
   return true;
 }
 
-/* Returns the force that holds the speed to what the ruling allows, N along n, never pulling into the object. */
+/* Returns the force that holds the speed to the ruling's limit, N along n; it never pulls into the object. */
 static double hold_speed(const ethd__core_tick *t, const ethd_contact *c, double speed) {
   return c->v > speed ? -t->plan->brake * (c->v - speed) : 0;
 }
 
-/* Adds a contact to what the other contacts gave. */
+/* Adds a contact's results to those of the other contacts. */
 static void add(ethd__core_tick *t, const contact_work *w, double force) {
   const ethd_contact *c = &w->contact;
   const ethd_ruling *r = &w->ruling;
@@ -121,7 +121,7 @@ static void add(ethd__core_tick *t, const contact_work *w, double force) {
   out->fd = ethd_vec3_add(out->fd, ethd_vec3_scale(braking, c->n));
 }
 
-/* Writes into the slot whose surface it is, before a law can fail. */
+/* Stores the slot's surface, before a law can fail. */
 static void claim(ethd__slot *slot, const ethd__candidate *k) {
   slot->object = k->object;
   slot->place = k->place;
@@ -135,15 +135,15 @@ static void change_state(ethd__slot *slot, int32_t state) {
   slot->state = state;
 }
 
-/* Keeps what a new plan may adopt of a contact. Only the old plan's run at a swap, on the scratch, needs to do so. */
+/* Stores a contact's data for adoption by a new plan. Only the old plan's run at a swap, on the scratch, does so. */
 static void tell(ethd__slot *slot, const ethd_contact *c, const ethd_ruling *r) {
   slot->past.offset = r->offset;
   slot->past.d_re = c->d_re;
   slot->past.v = c->v;
 }
 
-/* What acts beside the wall and can reach a finger, N along n. Before a wall is rendered no finger leans on the ring,
-   so the feed doesn't count as energy given: like tracking's torque it becomes the ring's motion and heat. */
+/* The other forces that can act on a finger, N along n. Before a wall is rendered no finger presses on the ring, so the
+   feed doesn't count as released energy: like tracking's torque it becomes the ring's motion and heat. */
 static double bare_force(const ethd_ruling *r, double v) {
   double braking = -r->damping * v;
   return r->share > 0 ? r->feed + braking : braking;
@@ -188,7 +188,7 @@ static ethd__slot *free_slot(const ethd__core_tick *t) {
   return NULL;
 }
 
-/* Ends the contacts that no touch continues. */
+/* Ends the contacts that no candidate continues. */
 static void end_lost(ethd__core *core, const ethd__candidates *c) {
   unsigned lost = c->live;
   for (int k = 0; k < c->count; k++)
@@ -207,7 +207,7 @@ static void no_room(ethd__core_tick *t, int count) {
 
 /* Frees the slot of the shallowest contact, which comes after candidate k in the list. */
 static void make_room(ethd__core *core, ethd__candidates *c, int k) {
-  /* unreachable: the loop's end, for fewer than all slots belong to candidates up to k */
+  /* unreachable: the loop's end, since not all slots belong to candidates up to k */
   for (int i = c->count - 1; i > k; i--) {
     if (c->at[i].slot < 0) continue;
     ethd__slot_free(core, &core->slots[c->at[i].slot]);
@@ -244,7 +244,7 @@ static bool could_count(const ethd_contact *c, double near, const ethd__slot *sl
   return c->d_re < near || c->d_fr <= c->d_beta || (slot && slot->state != ETHD_TRANSPARENT);
 }
 
-/* Takes the candidates from the deepest to the shallowest, so that the shallowest go when there is no room. */
+/* Processes the candidates from the deepest to the shallowest, so that the shallowest are dropped if room lacks. */
 static bool work_out_all(ethd__core_tick *t, ethd__candidates *c) {
   for (int k = 0, taken = 0; k < c->count; k++) {
     contact_work w;

@@ -22,7 +22,7 @@ static bool control_is(fp_control a, fp_control b) { return a.word == b.word && 
 
 /* ---- fences: a pattern before the law's state and from its end on ---- */
 
-#define PATTERN 0xfe9ce5fe9ce5fe9cu /* a NaN, but not the default one: no law writes it by accident */
+#define PATTERN 0xfe9ce5fe9ce5fe9cu /* a NaN other than the default one: no law writes it by accident */
 
 static void put_words(void *to, size_t bytes) {
   const uint64_t word = PATTERN;
@@ -41,7 +41,7 @@ static bool holds(const void *from, size_t bytes) {
   return !changed && memcmp((const char *)from + i, &pattern, bytes - i) == 0;
 }
 
-/* Returns the bytes behind the law's state, up to the end of the fence after its block. */
+/* Returns the bytes from the end of the law's state to the end of the fence behind its block. */
 static size_t rest_of(const ethd_law *law) {
   return sizeof(ethd__law_block) - offsetof(ethd__law_block, at) - law->state_size;
 }
@@ -70,7 +70,7 @@ static call enter(const ethd_law *law, ethd__law_block *b) {
   return (call){law, b, control_now()};
 }
 
-/* Finds what the law changed that it must not change, and undoes it. */
+/* Detects and undoes a law's forbidden changes. */
 static ethd_status leave(const call *c, ethd_status status) {
   ethd__law_block *b = c->block;
   if (!control_is(control_now(), c->before)) {
@@ -106,7 +106,7 @@ void ethd__fence_reset(const ethd_law *law, const double *p, ethd__law_block *b)
   b->failed = leave(&c, ETHD_OK);
 }
 
-/* What `adopt` did beside its job fails the step after it, as with a reset. */
+/* A violation in `adopt` fails the step after it, as with a reset. */
 void ethd__fence_adopt(const ethd__core_plan *plan, ethd__law_block *b, const ethd_past *past) {
   const ethd_transition_law *law = plan->transition;
   if (!(plan->foreign & 1 << ETHD_TRANSITION)) {
@@ -120,7 +120,7 @@ void ethd__fence_adopt(const ethd__core_plan *plan, ethd__law_block *b, const et
   b->failed = found ? found : before;
 }
 
-/* `range` has no state, so only the processor is checked. Any block can say that it runs. */
+/* `range` has no state, so only the processor is checked. Any block can show that it runs. */
 ethd_status ethd__fence_range(const ethd__core_plan *plan, ethd__core *s, double speed, double *range) {
   ethd__law_block *b = &s->slots[0].transition;
   if (!(plan->foreign & 1 << ETHD_TRANSITION)) {

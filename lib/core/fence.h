@@ -1,8 +1,8 @@
-/* Foreign laws: code that isn't the library's own. Their calls are fenced: they may write their state block and
-   nothing around it, and must leave the processor's floating-point control as it was. A change fails the call
-   (ETHD_E_FENCE, ETHD_E_FENV), so the value of row LAW names the kind of law and what it did, and is undone.
+/* Foreign laws: code that isn't the library's own. Their calls are fenced: they may write only their state block, and
+   must not change the processor's floating-point control. A violation is undone and fails the call (ETHD_E_FENCE,
+   ETHD_E_FENV); the value of row LAW names the law's kind and the violation.
 
-   A plan holds the steps that its ticks call: the laws' own, or the fenced ones. So built-in laws cost nothing more. */
+   A plan holds the steps that its ticks call: the laws' own, or the fenced ones: built-in laws have no extra cost. */
 #ifndef ETHD__CORE_FENCE_H
 #define ETHD__CORE_FENCE_H
 
@@ -27,10 +27,10 @@ static inline void ethd__block_reset(const ethd__core_plan *plan, const ethd_law
     law->reset(p, block->at);
 }
 
-/* Hands a contact over to the plan's transition law, which has `adopt`. [rt] */
+/* Lets the plan's transition law, which has `adopt`, adopt a contact. [rt] */
 void ethd__fence_adopt(const ethd__core_plan *plan, ethd__law_block *block, const ethd_past *past) ETHD_RT;
 
-/* Asks the plan's transition law, which has `range`, how far it looks ahead, m. ETHD_E_FENV. [rt] */
+/* Gets from the plan's transition law, which has `range`, how far it looks ahead, m. ETHD_E_FENV. [rt] */
 ethd_status ethd__fence_range(const ethd__core_plan *plan, ethd__core *core, double speed, double *range) ETHD_RT;
 
 /* Returns the foreign law whose code runs on this state, NULL if none does. [any] */

@@ -2,11 +2,11 @@
 
 #include "core/rows.h"
 
-/* s: fade of tracking, as long as a swap's by default (transition.swap_time). */
+/* s: duration of tracking's fade, the default of a swap's (transition.swap_time). */
 #define FADE 0.020
 
-/* Implausible readings in a row that stop the device: as many as make the filter start anew (ETHD_FILTER_GATED_MAX).
-   The proximity ring, at 300 Hz, takes 17 ms for them. */
+/* Implausible readings in a row that stop the device: the number that restarts the filter (ETHD_FILTER_GATED_MAX). At
+   the proximity ring's 300 Hz they take 17 ms. */
 #define IMPLAUSIBLE_MAX 5
 
 double ethd__finger_age(ethd__core *core, double age, const double limits[2], double absent, double dt) {

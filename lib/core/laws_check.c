@@ -10,7 +10,7 @@ ethd_status ethd__within(const char *section, ethd_status status, ethd_error *er
   return status;
 }
 
-/* Asks the law's own check, which may leave the error alone: then the law's id says what is wrong. */
+/* Calls the law's own check. If it doesn't fill the error, the error's name is the law's id. */
 static ethd_status ask_law(const ethd_law *law, const double *p, ethd_error *error) {
   ethd_error own;
   ethd__error(&own, ETHD_OK, law->id);

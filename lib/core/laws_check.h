@@ -11,7 +11,7 @@ typedef struct ethd__laws {
   const double *tracking_p, *contact_p, *transition_p; /* their parameters, ETHD_PARAMS_MAX of each */
 } ethd__laws;
 
-/* Gives the laws of a setup, which both fronts call alike. */
+/* Gives the laws of a setup, whose fields have the same names in both fronts. */
 #define ETHD__LAWS(setup)                                                                             \
   (&(const ethd__laws){(setup)->tracking, (setup)->contact, (setup)->transition, (setup)->tracking_p, \
                        (setup)->contact_p, (setup)->transition_p})
@@ -23,7 +23,7 @@ ethd_status ethd__within(const char *section, ethd_status status, ethd_error *er
 ethd_status ethd__law_values_check(const ethd_law *law, const double *p, ethd_error *error);
 ethd_status ethd__laws_check(const ethd__laws *laws, ethd_error *error);
 
-/* Puts laws that were checked into a plan that knows its kind of command. */
+/* Puts checked laws into a plan that knows its kind of command. */
 void ethd__laws_plan(const ethd__laws *laws, ethd__core_plan *out);
 
 #endif

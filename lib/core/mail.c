@@ -27,7 +27,7 @@ ethd_status ethd__mail_poll(ethd__mail *m, ethd_event *out) {
   return ETHD_OK;
 }
 
-/* ---- what [main] and [any] have left ---- */
+/* ---- posts and acknowledgements ---- */
 
 bool ethd__mail_take(ethd__mail *m, ethd__core *core, unsigned events) {
   if (!atomic_load_explicit(&m->posted, memory_order_acquire) || room(m) < events) return false;
@@ -41,7 +41,7 @@ double ethd__core_clean_time(const ethd__core *core, double period) {
   return (double)__atomic_load_n(&core->clean, __ATOMIC_RELAXED) * period;
 }
 
-/* The tolerance is for the rounding of a sum of periods. */
+/* The tolerance covers the rounding of a sum of periods. */
 bool ethd__mail_clear(ethd__mail *m, ethd__core *core, double period, double clean_time) {
   if (!atomic_load_explicit(&m->clear, memory_order_relaxed)) return false;
   atomic_store_explicit(&m->clear, 0, memory_order_relaxed);
@@ -50,7 +50,7 @@ bool ethd__mail_clear(ethd__mail *m, ethd__core *core, double period, double cle
   return true;
 }
 
-/* ---- what a tick reports ---- */
+/* ---- events of a tick ---- */
 
 /* Clamps are frequent, so they make an event only when they last. */
 #define TOLD_WHEN_GRAVE (ETHD_FAULT_BIT(ETHD_FAULT_TORQUE) | ETHD_FAULT_BIT(ETHD_FAULT_TORQUE_RATE))

@@ -10,7 +10,7 @@ _Static_assert(sizeof(ethd_velocity_method) == sizeof(unsigned), "a method is co
 _Static_assert(sizeof(ethd_fit_method) == sizeof(unsigned), "a method is copied as a number");
 _Static_assert(sizeof(ethd_filter_method) == sizeof(unsigned), "a method is copied as a number");
 
-/* ---- what is chosen ---- */
+/* ---- choices ---- */
 
 void ethd__setup_values(const ethd_param *params, uint32_t count, double p[ETHD_PARAMS_MAX]) {
   memset(p, 0, ETHD_PARAMS_MAX * sizeof *p);
@@ -66,7 +66,7 @@ ethd_status ethd__named_choose(const ethd__named *named, void *setup, const char
 
 /* ---- numbers ---- */
 
-/* Finds the `index`-th number of a setup: the front's own, then parameters of what is chosen. */
+/* Finds the `index`-th number of a setup: the front's own, then parameters of the chosen parts. */
 static bool find_at(const ethd__named *named, const void *setup, uint32_t index, ethd__setup_field *out) {
   if (index < named->field_count) return *out = named->field_at(index), true;
   index -= named->field_count;
@@ -89,7 +89,7 @@ ethd_status ethd__named_key_at(const ethd__named *named, const void *setup, uint
   return ETHD_OK;
 }
 
-/* Returns what follows "section.key" in a name, NULL if the name is another key's. */
+/* Returns the rest of a name after "section.key", NULL if the name is another key's. */
 static const char *after(const ethd_setup_key *key, const char *name) {
   size_t section = strlen(key->section), own = strlen(key->param.name);
   if (strncmp(name, key->section, section) != 0 || name[section] != '.') return NULL;
@@ -98,7 +98,7 @@ static const char *after(const ethd_setup_key *key, const char *name) {
   return *name == 0 || *name == '[' ? name : NULL;
 }
 
-/* Turns "[2]" into 2, and what isn't an index into ETHD_RAYS, which no key has. */
+/* Returns 2 for "[2]"; for a text that isn't an index ETHD_RAYS, an index that no key has. */
 static uint32_t index_of(const char *text) {
   uint32_t index = 0;
   const char *at = text + 1;

@@ -1,4 +1,4 @@
-/* A setup as rows, by which its numbers are found, set and chosen by name: what the fronts share. [main] */
+/* A setup as rows, to find, set and choose its numbers by name, for both fronts. [main] */
 #ifndef ETHD__CORE_NAMED_H
 #define ETHD__CORE_NAMED_H
 
@@ -12,7 +12,7 @@ typedef struct ethd__setup_field {
   uint32_t offset;
 } ethd__setup_field;
 
-/* A front's setup: its own numbers, then the parameters of what is chosen. */
+/* A front's setup: its own numbers, then the parameters of the chosen parts. */
 typedef struct ethd__named {
   const ethd_setup_part *parts;
   uint32_t part_count;

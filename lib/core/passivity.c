@@ -2,21 +2,21 @@
    from tick to tick, so its work is exact.
 
         E += -F travel          F along n < 0 pushes out, travel into the object > 0
-        E > 0                   the wall has absorbed energy; forgotten while it doesn't push, since nothing is stored
-        E < 0                   it gave more away than it took; forgotten within a second or so
-        E < -energy             damping is added, as much as brings E back within one period's motion, at most
+        E > 0                   the wall has absorbed energy; reset while it doesn't push, since nothing is stored
+        E < 0                   it released more than it absorbed; decays within about a second
+        E < -energy             damping is added, enough to correct E within one period's motion, at most
                                 plan.damping_max; the wall still never pulls
-        E < -2 energy           if this comes again and again for EXCESS_MAX, damping doesn't help. A gap shorter than
-                                RESPITE doesn't interrupt the count, because the wall then stores some of what it
-                                gives next; a longer one says that damping has helped
+        E < -2 energy           if this recurs for EXCESS_MAX, damping doesn't help. A gap shorter than RESPITE doesn't
+                                interrupt the count, because the wall then stores a part of the energy that it releases
+                                next; a longer one shows that damping has helped
 
-   What a law feeds forward counts while it renders a wall. Before that no finger leans on the ring: friction that is
-   given back, or a brake ahead of the wall, is the motors' affair, and reaches the finger as what the ring's speed at
-   the touch is worth, m v^2/2, like the speed that tracking gave it (0.15 mJ at 0.05 m/s and 0.12 kg).
+   A law's feed counts only while the law renders a wall. Before that no finger presses on the ring: compensated
+   friction, or a brake ahead of the wall, acts on the ring alone. The finger feels it only as the ring's kinetic energy
+   at the touch, m v^2/2, as with the speed from tracking (0.15 mJ at 0.05 m/s and 0.12 kg).
 
-   A contact that begins soon after the last one ended, as in a bounce, goes on with what that one gave away. A contact
-   that is watched only once it is within the wall, after a swap or an acknowledged fault, has already stored energy;
-   its account begins with that. */
+   A contact that begins soon after the last one ended, as in a bounce, continues with the energy which that one
+   released. A contact that is first observed inside the wall, after a swap or an acknowledged fault, has already stored
+   energy; E begins with this energy. */
 #include "core/passivity.h"
 
 #include "core/rows.h"
@@ -25,8 +25,8 @@
 #define EXCESS_MAX 0.050 /* s */
 #define RESPITE 0.025    /* s */
 
-/* A device gives the force in the period after it was worked out, or in the one after that: both are watched,
-   and the worse counts. */
+/* A device applies the force in the period after its computation, or one period later: both are observed, and the worse
+   counts. */
 static void observe(ethd__slot *slot, const ethd_contact *c) {
   double travel = slot->watched ? slot->depth_was - c->d_re : 0;
   for (int late = 0; late < 2; late++) {
@@ -38,8 +38,8 @@ static void observe(ethd__slot *slot, const ethd_contact *c) {
   slot->depth_was = c->d_re;
 }
 
-/* What a spring that pushes like this wall has stored; one that stiffens has stored less. A wall that came to the ring
-   by itself, in a new scene, has stored nothing. */
+/* The energy stored in a spring with this wall's force; a stiffening spring has stored less. A wall of a new scene that
+   appears at the ring has stored nothing. */
 static double stored(const ethd__core_tick *t, const ethd__slot *slot, double depth, double wall) {
   return slot->periods > 0 || t->soft ? fmax(-wall * depth / 2, 0) : 0;
 }
@@ -54,7 +54,7 @@ static void begin(const ethd__core_tick *t, ethd__slot *slot, double depth, doub
   }
 }
 
-/* Returns the damping to add, Ns/m: it begins when more than the bound was given away and ends below half of it. */
+/* Returns the damping to add, Ns/m: it begins when more than the bound was released and ends below half of it. */
 static double damping(const ethd__core_plan *plan, ethd__slot *slot, double given, double v, double period) {
   const double bound = plan->energy;
   if (given > bound) slot->giving = true;

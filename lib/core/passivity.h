@@ -3,8 +3,8 @@
 
 #include "core/tick.h"
 
-/* Returns the force along n, N, that is to be added to the wall's to keep a contact passive; brake: what else acts
-   along n, N. To be called once for each contact in a tick, and only where limits.energy is set. [rt] */
+/* Returns the force along n, N, to add to the wall's so that a contact stays passive; brake: other forces along n, N.
+   To be called once for each contact in a tick, and only if limits.energy is set. [rt] */
 double ethd__passivity(const ethd__core_tick *t, ethd__slot *slot, const ethd_contact *c, double wall,
                        double brake) ETHD_RT;
 

@@ -1,4 +1,4 @@
-/* What the core needs of a setup, worked out by [main]: the laws, the effector's sizes, and what bounds a contact. */
+/* The core's part of a plan, made by [main]: the laws, the effector's sizes, and the limits of a contact. */
 #ifndef ETHD__CORE_PLAN_H
 #define ETHD__CORE_PLAN_H
 
@@ -13,12 +13,12 @@ typedef struct ethd__core_plan {
   double d_beta;        /* R_r - R_f,max, m */
   double v_hysteresis;  /* m/s */
   double swap_time;     /* s */
-  double energy;        /* J that a contact may give away */
+  double energy;        /* J that a contact may release */
   double damping_max;   /* Ns/m that the passivity controller may add */
   double brake;         /* Ns/m: damping of a force that holds a ruling's speed; 0: the front bounds the speed itself */
   bool watches_energy;  /* `energy` is a limit */
   bool latches;         /* limits.latch */
-  bool by_velocity;     /* `follow` is the law's velocity, not its force */
+  bool by_velocity;     /* `follow` calls the law's velocity, not its force */
   int foreign;          /* bits: kinds whose law isn't the library's own */
   const ethd_tracking_law *tracking;
   const ethd_contact_law *contact;

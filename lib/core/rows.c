@@ -1,5 +1,5 @@
-/* What follows from the rows of the fault table that a tick noted. The table's reactions become four masks: the rows
-   that stop the ring or take the torque away by their first reaction, and those that do so by their second. */
+/* Reactions to the noted rows of a tick. The table's reactions become four masks: the rows that stop the ring or remove
+   the torque by their first reaction, and those that do so by their second. */
 #include "core/rows.h"
 
 #define IF(reaction, wanted, row) (ETHD_REACTION_##reaction == ETHD_REACTION_##wanted ? ETHD_FAULT_BIT(row) : 0)
@@ -40,7 +40,7 @@ void ethd__rows_take(ethd__core *core, int64_t faults, int64_t grave) {
   core->met.rows.grave = grave & all;
 }
 
-#define CUT_MAX (0.1 + 1e-9) /* s; a torque that is cut for longer makes an event (sums of periods are rounded) */
+#define CUT_MAX (0.1 + 1e-9) /* s; a torque cut for longer makes an event (sums of periods are rounded) */
 
 void ethd__note_guard(ethd__core *core, int64_t bits, double cut) {
   if (bits & ETHD_GUARD_WORKSPACE) ethd__note_grave(core, ETHD_FAULT_WORKSPACE);
@@ -62,7 +62,7 @@ void ethd__rows_stop(const ethd__core *core, ethd__halt halt) {
   if (zero) *halt.stopped = 1;
 }
 
-/* Latches the first fault, which stays; a later ZERO ends a STOP that is still damping. Returns the latched fault. */
+/* Latches the first fault, which stays; a later ZERO ends a STOP that is still braking. Returns the latched fault. */
 static ethd_fault latch(ethd__core *core, ethd__halt halt, ethd_fault first, int64_t zero) {
   if (zero) ethd__rows_stop(core, halt);
   if (!core->fault) __atomic_store_n(&core->fault, first, __ATOMIC_RELAXED);
@@ -83,7 +83,7 @@ ethd_fault ethd__judge(ethd__core *core, bool latches, ethd__halt halt, int64_t 
   return first;
 }
 
-/* ---- what is reported ---- */
+/* ---- reports ---- */
 
 ethd__fault_rows ethd__rows_begun(const ethd__core *core, bool latches) {
   const ethd__fault_rows *met = &core->met.rows, *before = &core->before;

@@ -1,6 +1,6 @@
-/* Whatever is wrong is noted as a row of the fault table where it is seen, with a value if the row has one. At the end
-   of the tick rows.c decides from the noted rows whether the torque goes or the ring is stopped, what latches, which
-   status the step returns and which events there are. All [rt]. */
+/* Code that detects a fault notes its row of the fault table, with a value if the row has one. At the end of the tick
+   rows.c decides from the noted rows whether the torque is removed or the ring is stopped, what latches, which status
+   the step returns and which events there are. All [rt]. */
 #ifndef ETHD__CORE_ROWS_H
 #define ETHD__CORE_ROWS_H
 
@@ -29,7 +29,7 @@ static inline bool ethd__law_is_good(ethd__core *core, ethd_kind kind, ethd_stat
   return false;
 }
 
-/* Begins a tick with no rows but those that device and loop report in the sense. */
+/* Begins a tick with the rows that device and loop report in the sense. */
 void ethd__rows_take(ethd__core *core, int64_t faults, int64_t grave) ETHD_RT;
 
 static inline void ethd__rows_begin(ethd__core *core, int64_t faults, int64_t grave) ETHD_RT {
@@ -47,18 +47,18 @@ static inline bool ethd__rows_forbid(const ethd__core *core) ETHD_RT {
   return core->fault || (ethd__rows_any(&core->met.rows) && ethd__rows_zero(&core->met.rows));
 }
 
-/* The guard's flags that rows set: what stops the effector, and that it has stopped (ethd_guard_state). */
+/* The guard's flags that rows set: the reasons to stop the effector, and that it has stopped (ethd_guard_state). */
 typedef struct ethd__halt {
   int32_t *stopping, *stopped;
 } ethd__halt;
 
-/* Makes the guard stop the effector, or let it go, if a noted row calls for it. */
+/* Makes the guard stop the effector, or remove its torque, if a noted row calls for it. */
 void ethd__rows_stop(const ethd__core *core, ethd__halt halt) ETHD_RT;
 
-/* Notes what the guard did (bits; a command was cut for `cut` s). */
+/* Notes the guard's actions (bits; a command was cut for `cut` s). */
 void ethd__note_guard(ethd__core *core, int64_t bits, double cut) ETHD_RT;
 
-/* Latches what must be latched. Returns the fault that the tick ends with. */
+/* Latches the faults that must latch. Returns the fault with which the tick ends. */
 ethd_fault ethd__judge(ethd__core *core, bool latches, ethd__halt halt, int64_t periods) ETHD_RT;
 
 /* Returns the occurrences that begin at this tick, and as `grave` those whose second reaction begins at it. */

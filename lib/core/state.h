@@ -1,4 +1,4 @@
-/* The core's state: what both fronts keep from tick to tick of faults, contacts, laws and fades. It is flat, so that a
+/* The core's state of faults, contacts, laws and fades, which both fronts keep from tick to tick. It is flat, so that a
    tick can run on a copy, and a reset is one memset. */
 #ifndef ETHD__CORE_STATE_H
 #define ETHD__CORE_STATE_H
@@ -42,14 +42,14 @@ typedef struct ethd__fault_rows {
   int64_t faults, grave;
 } ethd__fault_rows;
 
-/* What a tick has noted: rows, and the value of those that have one. */
+/* The noted rows of a tick, with their values. */
 typedef struct ethd__met {
   ethd__fault_rows rows;
   int64_t valued; /* bits: rows with a value below */
   double value[ETHD_FAULT_COUNT];
 } ethd__met;
 
-/* The device's clock, where the gap between two steps is limited (clock.h). */
+/* The device's clock, if the gap between two steps is limited (clock.h). */
 typedef struct ethd__clock {
   uint64_t begun;  /* tick at which the check began */
   uint64_t next;   /* tick at which it goes on */
@@ -59,13 +59,13 @@ typedef struct ethd__clock {
   double waits;    /* s for which the same sample has come again */
 } ethd__clock;
 
-/* What fades: the difference that a swap made, and the command after an acknowledged fault. */
+/* The fades: of a swap's difference, and of the command after an acknowledged fault. */
 typedef struct ethd__fade {
   double delta[3]; /* old - new command at the swap */
-  double from[3];  /* size of the old one */
+  double from[3];  /* size of the old command */
   double elapsed;  /* s since then; INFINITY: no fade */
   double soft;     /* s since a fault was acknowledged; INFINITY: the command is whole again */
-  bool active;     /* one of the two goes on */
+  bool active;     /* one of the two fades goes on */
 } ethd__fade;
 
 typedef struct ethd__core {
@@ -81,9 +81,9 @@ typedef struct ethd__core {
   double memory[ETHD_MEMORY];      /* of the transition law */
   unsigned live;                   /* slots in use, as bits */
   unsigned orphans;                /* contacts whose scene was replaced at this tick */
-  double given;                    /* J that the last contact gave away */
+  double given;                    /* J that the last contact released */
   uint64_t given_at;               /* tick */
-  uint64_t excess_from, excess_at; /* first and last step after which it was far too much; 0: never */
+  uint64_t excess_from, excess_at; /* first and last step with far too much of it; 0: never */
   ethd__law_block tracking;
   ethd__fade fade;
 } ethd__core;

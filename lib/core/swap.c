@@ -3,8 +3,8 @@
 #include "core/fade.h"
 #include "core/fence.h"
 
-/* Makes a contact an orphan when its scene was replaced. Its object's number means nothing in the new scene, so its
-   point is kept, by which candidates.c finds the same surface there. */
+/* Makes a contact an orphan when its scene was replaced. Its object's number isn't valid in the new scene, so its point
+   is kept, with which candidates.c finds the same surface there. */
 static void orphan(ethd__core *core, int i, const ethd__core *old) {
   ethd__slot *slot = &core->slots[i];
   if (!(core->live & (old ? old->live : 0) & 1u << i)) {
@@ -16,7 +16,7 @@ static void orphan(ethd__core *core, int i, const ethd__core *old) {
   core->orphans |= 1u << i;
 }
 
-/* Resets the new law's state, and hands it the contact as the old law leaves it after this tick if it can adopt one. */
+/* Resets the new law's state. If the law can adopt a contact, it gets the contact as the old law leaves it. */
 static void adopt(const ethd__core_plan *to, const ethd__slot *was, ethd__slot *slot) {
   const ethd_transition_law *law = to->transition;
   ethd__block_reset(to, &law->law, to->transition_p, &slot->transition);

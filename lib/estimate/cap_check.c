@@ -34,7 +34,7 @@ static ethd_status check_numbers(const ethd_cap *cap, ethd_error *error) {
   return status;
 }
 
-/* Rays in one plane can't tell a finger on its one side from one on the other. */
+/* Rays in one plane can't determine the side of the plane on which a finger is. */
 static bool in_one_plane(const ethd_cap *cap) {
   ethd__normal m = {.n = 3};
   ethd_vec3 mean = {0, 0, 0};

@@ -20,11 +20,11 @@ void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__filte
   p[AA] = w.aa * w.aa * p[AA] + ga * ga;
 }
 
-/* Of position and velocity: where their covariances with all three are. */
+/* Indices of the covariances of position and of velocity with all three. */
 static const int covariances[2][3] = {{XX, XV, XA}, {XV, VV, VA}};
 
-/* What one axis' gains and covariance become when its state `o` is measured: 0 is the position, 1 the velocity. `square`
-   is the squared innovation of all axes together. */
+/* Computes gains and covariance of one axis for a measurement of its state `o`: 0 is the position, 1 the velocity.
+   `square` is the squared innovation of all axes together. */
 static inline bool measure(double p[6], int o, double square, double noise, double gate, double k[3]) {
   const int *c = covariances[o], own = c[o], first = c[1 - o], last = c[2];
   double variance = p[own] + noise * noise;

@@ -15,8 +15,8 @@ static inline bool ethd__filter_is_kalman(const ethd_filter *f) {
   return f->method == ETHD_FILTER_CV || f->method == ETHD_FILTER_CA;
 }
 
-/* The motion within t s: x += v t + a ax, v += a av, a = a aa. An acceleration fades, a' = -a / memory, which the
-   trapezoidal rule integrates; for memory = inf it stays, and ax, av, aa are exactly t^2 / 2, t and 1. */
+/* The motion within t s: x += v t + a ax, v += a av, a = a aa. An acceleration decays, a' = -a / memory, integrated by
+   the trapezoidal rule; for memory = inf it is constant, and ax, av, aa are exactly t^2 / 2, t and 1. */
 typedef struct ethd__filter_motion {
   double t, ax, av, aa;
 } ethd__filter_motion;
@@ -30,14 +30,14 @@ static inline ethd__filter_motion ethd__filter_motion_over(const ethd_filter *f,
 /* Carries the covariance over t s and adds the process noise. [rt] */
 void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__filter_motion w) ETHD_RT;
 
-/* Correct the covariance for a reading of position or velocity whose noise is known, m or m/s, and give the gains of x,
-   v and a. square: squared length of its innovation; false: it is over `gate` standard deviations, nothing is done.
+/* Correct the covariance for a reading of position or velocity with a known noise, m or m/s, and give the gains of x, v
+   and a. square: squared length of its innovation; false: it is over `gate` standard deviations, and nothing changes.
    [rt] */
 bool ethd__filter_gains(ethd_filter_state *s, double square, double noise, double gate, double k[3]) ETHD_RT;
 bool ethd__filter_v_gains(ethd_filter_state *s, double square, double noise, double gate, double k[3]) ETHD_RT;
 
-/* ethd_filter_update for readings whose noise differs from one to the next: sd of each axis, m; 0: as the filter's
-   parameter says. Filters of fixed gains don't ask. [rt] */
+/* ethd_filter_update for readings whose noise differs from one to the next: sd of each axis, m; 0: the filter's
+   parameter. Filters of fixed gains ignore it. [rt] */
 ethd_status ethd__filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, double age,
                                 double noise) ETHD_RT;
 

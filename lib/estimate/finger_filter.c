@@ -1,4 +1,4 @@
-/* The plane's functions and those of space are one code: `axes`, 2 or 3, is a constant wherever it is inlined. In the
+/* The functions of the plane and of space share their code: `axes`, 2 or 3, is a constant where it is inlined. In the
    plane the third components stay 0. */
 #include "ethd/estimate.h"
 
@@ -12,7 +12,7 @@
 
 /* ---- start ---- */
 
-/* How far off a filter's start may be: the variances of each axis. Only for ca is the acceleration uncertain. */
+/* The uncertainty of a filter's start: the variances of each axis. Only ca has an uncertain acceleration. */
 typedef struct doubt {
   double x, v, a; /* m^2, m^2/s^2, m^2/s^4 */
 } doubt;
@@ -37,8 +37,8 @@ void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd
   ethd_filter_start3(filter, state, (ethd_vec3){x.x, x.y, 0}, (ethd_vec3){v.x, v.y, 0});
 }
 
-/* Begins at a reading, whose noise is known. Without a velocity it is taken to be at rest, with a sd of 1 m/s; the sd of
-   the acceleration is 10 m/s^2: a finger in full motion. */
+/* Begins at a reading of known noise. Without a velocity the finger starts at rest, with a sd of 1 m/s; the sd of the
+   acceleration is 10 m/s^2: a finger in full motion. */
 static void start_from(const ethd_filter *f, ethd_filter_state *s, const ethd_filter_reading *seen) {
   const bool moves = seen->v_noise > 0 && ethd__filter_is_kalman(f);
   const doubt d = {seen->noise * seen->noise, moves ? seen->v_noise * seen->v_noise : 1, 100};
@@ -70,7 +70,7 @@ void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, do
 
 /* ---- readings ---- */
 
-/* Gives what was seen less what was expected, and returns its squared length. */
+/* Gives the reading minus the prediction, and returns its squared length. */
 FOR_AXES double innovation(const double expected[3], ethd_vec3 seen, double r[3], int axes) {
   r[0] = seen.x - expected[0];
   r[1] = seen.y - expected[1];
@@ -126,8 +126,8 @@ static ethd_status gated(const ethd_filter *f, ethd_filter_state *s, const ethd_
   return ++s->gated_in_a_row < ETHD_FILTER_GATED_MAX ? ETHD_STATUS_STALE : restart(f, s, seen);
 }
 
-/* Takes a reading whose numbers are possible. Before a reading after a known start no time is known to have passed where
-   ages aren't compensated: then `elapsed` is infinite, and nothing was lost. */
+/* Processes a reading with possible numbers. If ages aren't compensated, the time from a known start to the first
+   reading is unknown: then `elapsed` is infinite, and no loss counts. */
 FOR_AXES ethd_status use(const ethd_filter *f, ethd_filter_state *s, const ethd_filter_reading *seen, int axes) {
   if (!s->started) {
     start_from(f, s, seen);
@@ -167,7 +167,7 @@ ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *sta
   ETHD__FP_RETURN(ethd_status, ethd__filter_update(filter, state, x, age, 0));
 }
 
-/* Returns whether x, v, age and noises are possible numbers; what isn't measured isn't asked. */
+/* Returns whether x, v, age and noises are possible numbers; unmeasured ones aren't checked. */
 static bool is_possible(const ethd_filter_reading *r) {
   const bool moves = !(r->v_noise == 0);
   if (!(r->noise >= 0 && r->noise <= ETHD_FILTER_NOISE_MAX)) return false;
@@ -176,7 +176,7 @@ static bool is_possible(const ethd_filter_reading *r) {
   return isfinite(r->x.x) && isfinite(r->x.y) && isfinite(r->x.z) && (r->extrapolated || isfinite(r->age));
 }
 
-/* A reading that was extrapolated to now is one that its stamp is the latency ahead of now. */
+/* A reading that was extrapolated to now counts as one whose stamp is the latency ahead of now. */
 ETHD__FP_APART static ethd_status update3(const ethd_filter *f, ethd_filter_state *s, const ethd_filter_reading *r) {
   if (!is_possible(r)) {
     s->gated++;

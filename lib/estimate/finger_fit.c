@@ -25,8 +25,8 @@ static void collect(const ethd_fit *fit, const double r[ETHD_RAYS], ethd__points
   out->used = ethd__points_used(out->counts);
 }
 
-/* Works out radius and residual from e = |p - c|^2 - R_f^2. It is small when the finger has the given radius, and the
-   variance of small numbers keeps its digits. Of points that are all in the ring's centre rounding leaves no radius. */
+/* Computes radius and residual from e = |p - c|^2 - R_f^2. It is small if the finger has the given radius, and the
+   variance of small numbers is accurate. If all points are in the ring's centre, rounding leaves no radius. */
 static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec centre, ethd_finger *out) {
   double square = fit->finger_radius * fit->finger_radius, n = ethd__count(points->used);
   two sum = {0, 0}, sum2 = {0, 0};
@@ -45,7 +45,7 @@ static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec c
 }
 
 static bool find(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
-  switch (fit->method) { /* unreachable: another method than these */
+  switch (fit->method) { /* unreachable: a method that isn't listed */
   case ETHD_FIT_VERTEX_MEAN: return ethd__fit_vertex_mean(points, centre);
   case ETHD_FIT_CENTROID: return ethd__fit_centroid(points, centre);
   case ETHD_FIT_ROBUST: return ethd__fit_robust(fit, points, centre);

@@ -1,7 +1,7 @@
 /* Circles through points: least squares of |p - c|^2 - R^2, radius sought or known.
 
-   Everything is worked out from the moments of u = p - origin. They take one pass over the points; after that any
-   number of steps is cheap, since moving the origin by s doesn't need the points again:
+   All results follow from the moments of u = p - origin. They take one pass over the points; after that each step is
+   cheap, since moving the origin by s doesn't need the points:
 
      sum |u - s|^2 (u - s) = sum |u|^2 u - 2 sum u u^T s + |s|^2 sum u - s sum |u - s|^2            */
 #include <math.h>
@@ -9,7 +9,7 @@
 
 #include "estimate/fit_methods.h"
 
-#define SHORT 1e-4 /* squared step over squared radius under which a fit is done: 1/20000 of the radius is left then */
+#define SHORT 1e-4 /* squared step over squared radius at which a fit ends: an error of 1/20000 of the radius remains */
 #define FLAT 1e-9  /* determinant over squared trace under which the points count as on one line */
 
 typedef struct moments {
@@ -91,7 +91,7 @@ static inline bool step(moments *m, double radius, ethd_vec *centre, double *mov
   return true;
 }
 
-/* Returns how far |u|^2 - R^2 may be from 0; divided by 2 R it is nearly |u| - R, for which the gate is given. */
+/* Returns the gate for |u|^2 - R^2; divided by 2 R this is nearly |u| - R, to which the parameter applies. */
 static inline double gate(const ethd_fit *fit) { return 2 * fit->finger_radius * fit->p[ROBUST_GATE]; }
 
 /* Adds a point to the moments, or with sign -1 takes it out. */
@@ -107,8 +107,8 @@ static inline void add(moments *m, double sign, ethd_vec u) {
   m->zy += z * y;
 }
 
-/* Chooses anew those of the rays that are `there` which lie within the gate; returns false if they are the same as
-   before. The moments about the centre are updated by the one point that came or went, or else by another pass. */
+/* Chooses again, among the rays `there`, those within the gate; returns false if the choice is unchanged. If one point
+   was added or removed, it updates the moments about the centre, else it sums all again. */
 static inline bool choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS], ethd__points *points, ethd_vec centre,
                           moments *m) {
   double square = fit->finger_radius * fit->finger_radius, most = gate(fit);
@@ -128,8 +128,8 @@ static inline bool choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS]
 }
 
 /* Starts from Kasa's circle if it can be the finger: within the ring, and of the right radius to within the gate. Few
-   rays or an outlier may give another circle; then a step from the ring's centre, which is never far off, is the
-   start. */
+   rays or an outlier may give another circle; then the start is a step from the ring's centre, which is never far from
+   the finger. */
 static inline bool start(const ethd_fit *fit, const ethd__points *points, moments *m, ethd_vec *centre) {
   moments all = of(points, (ethd_vec){0, 0});
   double square = fit->finger_radius * fit->finger_radius, gap = fit->ring_radius - fit->finger_radius;
@@ -143,8 +143,8 @@ static inline bool start(const ethd_fit *fit, const ethd__points *points, moment
   return step(m, fit->finger_radius, centre, &moved);
 }
 
-/* The first step uses all points, so that a start which an outlier has pulled aside doesn't gate good ones. A step s
-   leaves an error of about |s|^2 / 2 R, so a short one with the same points is the last. */
+/* The first step uses all points, so that a start disturbed by an outlier doesn't gate good points. A step s leaves an
+   error of about |s|^2 / 2 R, so a short step with the same points is the last. */
 bool ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
   two_bits there[ETHD__PAIRS];
   double radius = fit->finger_radius, moved = 0;

@@ -12,10 +12,10 @@ enum { ROBUST_GATE };
 
 enum { ETHD__PAIRS = ETHD_RAYS / 2 };
 
-/* Where the rays met the finger, relative to the ring's centre; pair i holds rays 2 i and 2 i + 1. A fit that drops a
-   ray clears it in `counts` and `used`. */
+/* The points at which the rays meet the finger, relative to the ring's centre; pair i holds rays 2 i and 2 i + 1. A fit
+   that drops a ray clears it in `counts` and `used`. */
 typedef struct ethd__points {
-  two x[ETHD__PAIRS], y[ETHD__PAIRS]; /* 0 where a ray met nothing */
+  two x[ETHD__PAIRS], y[ETHD__PAIRS]; /* 0 for a ray that met nothing */
   two_bits counts[ETHD__PAIRS];       /* all bits set for a ray that counts, else none */
   uint32_t used;                      /* bit k: ray k counts */
 } ethd__points;
@@ -41,7 +41,7 @@ static inline uint32_t ethd__points_used(const two_bits counts[ETHD__PAIRS]) {
   return (uint32_t)(used[0] | used[1]);
 }
 
-/* Returns how many of 16 bits are set, summed up in pairs, fours and eights. */
+/* Returns the number of set bits of 16, summed in pairs, fours and eights. */
 static inline double ethd__count(uint32_t bits) {
   bits -= bits >> 1 & 0x5555;
   bits = (bits & 0x3333) + (bits >> 2 & 0x3333);

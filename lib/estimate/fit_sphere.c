@@ -10,12 +10,12 @@
 
 #include "fp_mode.h"
 
-#define FLAT 1e-6          /* pivot over trace under which the rays count as not determining the finger */
+#define FLAT 1e-6          /* pivot over trace under which the rays don't determine the finger */
 #define STEEPEST (-1. / 3) /* n . d over which a ray grazes the finger */
 #define FIRST 2            /* steps with all rays */
-#define CHOICES 6          /* steps before which the rays are chosen anew */
+#define CHOICES 6          /* first steps, before each of which the rays are chosen again */
 #define STEPS 16           /* at most, the first ones included */
-#define SETTLED 1e-10      /* m: the last step's length; it leaves about a hundredth of itself */
+#define SETTLED 1e-10      /* m: the last step's length; the remaining error is about a hundredth of it */
 
 /* ---- normal equations ---- */
 
@@ -57,7 +57,7 @@ typedef struct sphere {
   double radius;
 } sphere;
 
-/* Where a ray meets a sphere. */
+/* The intersection of a ray and a sphere. */
 typedef struct meeting {
   double rho, slope; /* m; n . d */
   ethd_vec3 n;
@@ -75,7 +75,7 @@ static bool meet(const ethd_cap_ray *ray, const sphere *s, meeting *out) {
   return true;
 }
 
-/* Gives a ray's meeting; false: it misses the sphere or grazes it. */
+/* Gives a ray's intersection; false: it misses the sphere or grazes it. */
 static bool meets_well(const ethd_cap_ray *ray, const sphere *s, meeting *out) {
   return meet(ray, s, out) && out->slope < STEEPEST;
 }
@@ -112,7 +112,7 @@ static bool step(const ethd_cap *cap, ethd__normal *m, sphere *s, double *moved)
   return s->radius > cap->finger_radius / 4 && s->radius < cap->finger_radius * 4;
 }
 
-/* Steps of the sum of (|p - c| - R)^2, which any point has a place in. */
+/* Takes steps for the sum of (|p - c| - R)^2, which exists for any point. */
 static bool first_steps(const ethd_cap *cap, const double *r, uint32_t there, sphere *s) {
   double moved;
   for (int pass = 0; pass < FIRST; pass++) {
@@ -121,7 +121,7 @@ static bool first_steps(const ethd_cap *cap, const double *r, uint32_t there, sp
       if (!(there >> k & 1)) continue;
       const ethd_vec3 u = ethd_vec3_sub(end_of(&cap->rays[k], r[k]), s->c);
       const double length = ethd_vec3_norm(u);
-      if (!(length > 0)) continue; /* the point in the centre is no direction */
+      if (!(length > 0)) continue; /* a point in the centre has no direction */
       const double g[4] = {u.x / length, u.y / length, u.z / length, 1};
       ethd__normal_add(&m, g, length - s->radius);
     }
@@ -145,8 +145,8 @@ static uint32_t choose(const ethd_cap *cap, const double *r, uint32_t there, con
   return used;
 }
 
-/* A ray of a fixed choice that no longer meets the sphere has no residual: then the fit fails. So does one of fewer than
-   half of the rays, since as many others could agree on another finger. */
+/* If a ray of a fixed choice no longer meets the sphere, it has no residual, and the fit fails. A fit of fewer than
+   half of the rays fails too, since the others could agree on another finger. */
 static bool later_steps(const ethd_cap *cap, const double *r, uint32_t there, sphere *s, uint32_t *used) {
   uint32_t before = 0;
   for (int pass = FIRST; pass < STEPS; pass++) {
@@ -211,7 +211,7 @@ ethd_status ethd_cap_step(const ethd_cap *cap, const double *r, ethd_cap_finger 
   ETHD__FP_RETURN(ethd_status, cap_step(cap, r, out));
 }
 
-/* ---- the inverse, and what it can know ---- */
+/* ---- the inverse, and the bound of the fit ---- */
 
 ETHD__FP_APART static void cap_rays(const ethd_cap *cap, const sphere *s, double *r) {
   meeting at;

@@ -15,7 +15,7 @@ typedef struct ethd__normal {
 /* Adds a row g with its residual e. [any, rt-safe] */
 void ethd__normal_add(ethd__normal *m, const double g[4], double e) ETHD_RT;
 
-/* Factorises h = L D L^T in place; false: it isn't positive by far enough, so the rows don't determine the unknowns.
+/* Factorises h = L D L^T in place; false: a pivot is too small, so the rows don't determine the unknowns.
    [any, rt-safe] */
 bool ethd__normal_factorise(ethd__normal *m) ETHD_RT;
 

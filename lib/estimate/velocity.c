@@ -31,7 +31,7 @@ static double lowpass(const ethd_velocity *v, const ethd_velocity_state *s) {
 static double next(const ethd_velocity *v, ethd_velocity_state *s, double torque) {
   if (v->method == ETHD_VELOCITY_KALMAN) return ethd__velocity_kalman(v, s, torque);
   if (s->count < 2) return s->speed;
-  switch (v->method) { /* unreachable: another method; no default, so that the compiler names one that isn't here */
+  switch (v->method) { /* unreachable: another method; no default, so that the compiler reports a missing one */
   case ETHD_VELOCITY_LOWPASS: return lowpass(v, s);
   case ETHD_VELOCITY_LSQ: return ethd__velocity_lsq(v, s);
   case ETHD_VELOCITY_FOAW: return ethd__velocity_foaw(v, s);

@@ -78,7 +78,7 @@ static double kalman_lag(const ethd_velocity *v) {
 }
 
 double ethd_velocity_lag(const ethd_velocity *v) {
-  switch (v->method) { /* unreachable: another method than these */
+  switch (v->method) { /* unreachable: a method that isn't listed */
   case ETHD_VELOCITY_LOWPASS: return (0.5 + (1 - v->gain) / v->gain) * v->period;
   case ETHD_VELOCITY_LSQ:
   case ETHD_VELOCITY_FOAW: return (v->window - 1) / 2.0 * v->period;

@@ -3,8 +3,8 @@
 
 #include "estimate/velocity_methods.h"
 
-/* Sums over samples, each with its age t and its position y relative to the newest sample. So the size of clock and
-   position costs no digits, and the newest sample itself adds only to n. */
+/* Sums over samples, each with its age t and its position y relative to the newest sample. So a large clock or position
+   costs no accuracy, and the newest sample itself adds only to n. */
 typedef struct slope_line {
   double n, t, tt, y, ty;
 } slope_line;
@@ -17,7 +17,7 @@ static void line_add(slope_line *l, double t, double y) {
   l->ty += t * y;
 }
 
-/* Returns the slope over time. Ages run backwards, so the sign is turned. */
+/* Returns the slope over time. Ages run backwards, so the sign changes. */
 static double line_slope(const slope_line *l) { return (l->t * l->y - l->n * l->ty) / (l->n * l->tt - l->t * l->t); }
 
 static uint32_t samples(const ethd_velocity *v, const ethd_velocity_state *s) {
@@ -35,7 +35,7 @@ double ethd__velocity_lsq(const ethd_velocity *v, const ethd_velocity_state *s) 
 }
 
 /* A line through the newest sample passes within `noise` of the sample at age t iff its slope lies in
-   (rise -+ noise) / t. [low, high] are the slopes that all samples so far allow, so each sample is looked at once. */
+   (rise -+ noise) / t. [low, high] are the slopes that all samples so far allow, so each sample is tested once. */
 double ethd__velocity_foaw(const ethd_velocity *v, const ethd_velocity_state *s) {
   double noise = v->p[FOAW_NOISE];
   slope_line l = {.n = 1};

@@ -14,7 +14,7 @@ static int32_t breach(const ethd_limits *limits, ethd_vec x, ethd_vec v) {
   return bits;
 }
 
-/* Brings a value, which isn't NaN, to within `most` of the centre; returns true if it was outside. */
+/* Clamps a value, which isn't NaN, to within `most` of the centre; returns true if it was outside. */
 static bool clamp(double centre, double most, double *value) {
   double lo = centre - most, hi = centre + most;
   if (*value >= lo && *value <= hi) return false;
@@ -26,8 +26,8 @@ static void count(ethd_guard_state *s, int32_t bits) {
   for (; bits; bits &= bits - 1) s->counts[__builtin_ctz((unsigned)bits)]++;
 }
 
-/* Counts steep ticks and stops the ring after too many in a row. Steepness is judged on the torque that was asked for,
-   so one step that the rate limiter spreads over many ticks is steep only once. */
+/* Counts steep ticks and stops the ring after too many in a row. It judges the requested torque, so a step that the
+   rate limiter spreads over many ticks is steep only once. */
 static int32_t steep(const ethd_limits *limits, ethd_guard_state *s, double dt, const double torque[2]) {
   double most = limits->torque_rate * dt * (1 + 1e-9);
   bool too_steep = fabs(torque[0] - s->asked[0]) > most || fabs(torque[1] - s->asked[1]) > most;
@@ -38,7 +38,7 @@ static int32_t steep(const ethd_limits *limits, ethd_guard_state *s, double dt, 
   return ETHD_GUARD_STEEP;
 }
 
-/* Returns the most torque of a joint, Nm, that limit and heat leave; *bit says which of them it is. */
+/* Returns the largest torque of a joint, Nm, that limit and heat allow; *bit says which of them decides. */
 static double most_of(const ethd_limits *limits, const ethd_guard_state *s, int i, int32_t *bit) {
   *bit = ETHD_GUARD_TORQUE;
   if (!(limits->nominal_torque < (double)INFINITY)) return limits->torque;
@@ -63,7 +63,7 @@ int32_t ethd__guard_limit(const ethd_limits *limits, const ethd_guard_device *de
   if (!((torque[0] - torque[0]) + (torque[1] - torque[1]) == 0)) { /* x - x is NaN for an x that isn't finite */
     bits |= ETHD_GUARD_FINITE;
     torque[0] = torque[1] = 0;
-    s->last[0] = s->last[1] = 0; /* zero at this very tick, not at the rate's pace */
+    s->last[0] = s->last[1] = 0; /* clears the last torque, so that the rate limit can't delay the drop to zero */
   }
   if (!stopping && limits->torque_rate < (double)INFINITY) bits |= steep(limits, s, m->dt, torque);
   for (int i = 0; i < 2; i++) {
@@ -73,7 +73,7 @@ int32_t ethd__guard_limit(const ethd_limits *limits, const ethd_guard_device *de
   return bits;
 }
 
-/* The rate's window may lie outside of limits that have just become stricter, so the limits have the last word. */
+/* The rate's window may lie outside of limits that have just become stricter, so the limits are applied last. */
 int32_t ethd__guard_finish(const ethd_limits *limits, ethd_guard_state *s, const ethd__guard_faded *faded, double dt,
                            int32_t bits, double torque[2]) {
   const bool rated = limits->torque_rate < (double)INFINITY && !ethd__guard_stops(s, bits);

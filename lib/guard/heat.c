@@ -3,13 +3,13 @@
 
         h' = ((tau / nominal)^2 - h) / heat_time        solved exactly for a torque that is held
 
-   The motor's torque is unbounded up to h = FOLD. Above it the bound falls and reaches the nominal torque at h = 1,
-   where h rises no more. */
+   The motor's torque is unbounded up to h = FOLD. Above FOLD the bound falls and reaches the nominal torque at h = 1,
+   where h no longer rises. */
 #include "fp_mode.h"
 #include "guard/parts.h"
 
 #define FOLD 0.9     /* the last tenth of the heat is where the torque folds back */
-#define LOAD_MAX 1e3 /* times the nominal torque: no motor lives through more, and the model's heat stays finite */
+#define LOAD_MAX 1e3 /* times the nominal torque: no motor survives more, and the model's heat stays finite */
 
 ETHD__FP_APART static double heat(const ethd_limits *limits, ethd_guard_state *s, double dt) {
   double share = 1 - ethd_exp(-dt / limits->heat_time);

@@ -8,14 +8,14 @@
 
 #define INF ((double)INFINITY)
 #define SLOWEST 1e-6 /* rad/s^2 */
-#define ALONE 1e-6   /* a joint's excess below this share of the largest request scales nothing */
+#define ALONE 1e-6   /* an excess below this share of the largest request doesn't scale the vector */
 
 typedef struct window {
   double lo, hi;
-  ethd_joints_bound below, above; /* what the ends are of */
+  ethd_joints_bound below, above; /* the limits that set the ends */
 } window;
 
-/* Returns the most speed towards a bound that is d away. */
+/* Returns the largest speed towards a bound at the distance d. */
 static double approach(double d, double a, double T) {
   if (!(d > 0)) return 0;
   if (!(d < INF)) return INF;
@@ -29,7 +29,7 @@ static void narrow(window *w, double lo, double hi, ethd_joints_bound bound) {
   if (lo > w->lo) w->lo = lo, w->below = bound;
 }
 
-/* Moves both ends to within [lo, hi], which comes before what they were. */
+/* Moves both ends to within [lo, hi], which has priority. */
 static void force(window *w, double lo, double hi, ethd_joints_bound bound) {
   if (w->hi > hi) w->hi = hi, w->above = bound;
   if (w->lo < lo) w->lo = lo, w->below = bound;
@@ -37,7 +37,7 @@ static void force(window *w, double lo, double hi, ethd_joints_bound bound) {
   if (w->lo > hi) w->lo = hi, w->below = bound;
 }
 
-/* Returns which speeds a joint may have after this period. */
+/* Returns the allowed speeds of a joint after this period. */
 static window speeds(const ethd_joint_limit *j, double a, double T, double q, double v) {
   window w = {-INF, INF, ETHD_JOINTS_FREE, ETHD_JOINTS_FREE};
   narrow(&w, -approach(q - j->least, a, T), approach(j->most - q, a, T), ETHD_JOINTS_POSITION);
@@ -58,8 +58,8 @@ static window torques(const ethd_joint_limit *j, double T, double q, double v) {
   return w;
 }
 
-/* Returns the largest share of `asked` within the window, which is 1 where the window doesn't hold the direction at all
-   or leaves out next to nothing. */
+/* Returns the largest share of `asked` within the window. It is 1 if no share is within it, or if the excess is below
+   ALONE. */
 static double share_of(const window *w, double asked, double most) {
   if (asked <= w->hi && asked >= w->lo) return 1;
   const double end = asked > w->hi ? w->hi : w->lo;
@@ -70,7 +70,7 @@ static double share_of(const window *w, double asked, double most) {
 
 static bool are_finite(const ethd_joint_limits *limits, const double *numbers) {
   double sum = 0;
-  for (uint32_t i = 0; i < limits->count; i++) sum += numbers[i] - numbers[i]; /* NaN for one that isn't */
+  for (uint32_t i = 0; i < limits->count; i++) sum += numbers[i] - numbers[i]; /* NaN for a number that isn't finite */
   return sum == 0;
 }
 

@@ -1,12 +1,12 @@
-/* The stop: its law, bounds and sources stand in ethd/guard.h. */
+/* The stop: ethd/guard.h has its law, bounds and sources. */
 #include "fp_mode.h"
 #include "guard/parts.h"
 
 #define STILL 0.020  /* m/s */
-#define UNSEEN 0.1   /* of the speed at the start: what may be commanded before any fall is seen */
-#define PER_FALL 1.2 /* what may be commanded for each m/s of fall */
-#define NOTHING 0.01 /* of the speed at the start: less than this within a reaction doesn't brake */
-#define SPARE 1.25   /* of the time that a stop needs */
+#define UNSEEN 0.1   /* of the speed at the start: change that may be commanded before a fall is measured */
+#define PER_FALL 1.2 /* change that may be commanded for each m/s of fall */
+#define NOTHING 0.01 /* of the speed at the start: a smaller change within a reaction isn't braking */
+#define SPARE 1.25   /* times the time that a stop needs */
 #define E 2.718281828459045
 
 /* The triple root's gains, for a mass of 1 kg and a force that is 1 s late: with s = sqrt(2) - 2,
@@ -72,7 +72,7 @@ double ethd_guard_brake_time(const ethd_guard_device *d, const ethd_limits *limi
   ETHD__FP_RETURN(double, brake_time(d, limits));
 }
 
-/* Full torque brakes a link down to the speed at which the damping asks for less; from there on the speed decays. */
+/* Full torque brakes a link down to the speed at which the damping needs less torque; then the speed decays. */
 ETHD__FP_APART static double stop_time(const ethd_guard_device *d, const ethd_limits *limits) {
   const double late = reaction(d, true), speed = limits->speed;
   double longest = 0;
@@ -91,7 +91,7 @@ double ethd_guard_stop_time(const ethd_guard_device *d, const ethd_limits *limit
 
 /* ---- a tick of a stop ---- */
 
-/* Returns how fast the torques of the last tick change the links' speeds, m/s^2 at the ring. */
+/* Returns the acceleration by the torques of the last tick, m/s^2 at the ring. */
 static double acceleration(const ethd_guard_device *d, const double torque[2]) {
   double a = (torque[0] - d->serial * torque[1]) * d->link[0] / d->inertia[0];
   double b = torque[1] * d->link[1] / d->inertia[1];

@@ -1,4 +1,4 @@
-/* How the share of tracking falls near a surface. */
+/* The decrease of the share of tracking near a surface. */
 #ifndef ETHD__LAW_BETA_H
 #define ETHD__LAW_BETA_H
 

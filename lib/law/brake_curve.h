@@ -1,14 +1,14 @@
 /* Speed from which a ring can still stop at a distance d (Workman 1987, proximate time-optimal servomechanism).
 
    With the constant deceleration a it is sqrt(2 a d). A sampled loop can't follow its end: the slope a/v of the speed
-   over the distance grows without bound. From d_l on the curve is a straight line of slope `rate`, the bandwidth that
-   the loop has. Value and slope are those of a root that is moved by d_l/2:
+   over the distance grows without bound. Below d_l the curve is a straight line of slope `rate`, the loop's bandwidth.
+   Value and slope are those of a root that is moved by d_l/2:
 
      f(d) = rate d             d <= d_l          rate d_l = sqrt(2 a (d_l - d_l/2))     and
             sqrt(2 a (d - d_l/2))  d > d_l       rate = a / sqrt(2 a (d_l - d_l/2))     both say  d_l = a / rate^2
 
-   Along it the acceleration is -f f': -a on the root, -rate v on the line. A ring on the curve stands after
-   v^2/(2a) + d_l/2 from there on.                                                                      [rt] */
+   Along it the acceleration is -f f': -a on the root, -rate v on the line. A ring on the curve at speed v stops after
+   v^2/(2a) + d_l/2.                                                                                    [rt] */
 #ifndef ETHD__LAW_BRAKE_CURVE_H
 #define ETHD__LAW_BRAKE_CURVE_H
 
@@ -31,7 +31,7 @@ static inline double ethd__brake_curve_speed(const ethd__brake_curve *c, double 
   return d <= c->linear ? c->rate * d : sqrt(2 * c->a * (d - c->linear / 2));
 }
 
-/* Returns the distance at which the curve is met at speed v, m: a ring of this speed needs so much to stop. */
+/* Returns the distance at which the curve has speed v, m: the stopping distance of a ring at this speed. */
 static inline double ethd__brake_curve_way(const ethd__brake_curve *c, double v) ETHD_RT {
   return v <= c->rate * c->linear ? v / c->rate : v * v / (2 * c->a) + c->linear / 2;
 }

@@ -1,14 +1,14 @@
-/* Learns k, the ring's real deceleration over its model's, from how far the ring goes while it brakes.
+/* Learns k, the ring's real deceleration over its model's, from the ring's distance while it brakes.
 
-   Since braking began a ring has gone y farther than it would have gone at its speed, and by the model x farther; both
-   are negative. Its deceleration is k times the model's:
+   Since braking began the ring has travelled y more than at constant speed, and the model x more; both are negative.
+   Its deceleration is k times the model's:
 
      x = integral of the model's acceleration, twice     y = d_0 - d - v_0 t     y = s + k x
 
    s is the stretch of an elastic transmission: the encoders sit on its motors' side, which yields before the ring does
-   (0.5 mm on plant p, where x is 2 mm: y/x would say 1.25). It comes within some ms and stays, so k is the slope of y
+   (0.5 mm on plant p, where x is 2 mm: y/x would say 1.25). It appears within some ms and stays, so k is the slope of y
    over x by least squares, from SETTLED on, until the ring stands or the finger comes. Earlier brakings count with
-   weight 1 - learn, and a prior says 1. A braking that ended deeper than planned never raises k. [rt] */
+   weight 1 - learn, and the prior is 1. A braking that ended deeper than planned never raises k. [rt] */
 #ifndef ETHD__LAW_BRAKE_LEARNER_H
 #define ETHD__LAW_BRAKE_LEARNER_H
 
@@ -16,7 +16,7 @@
 
 #include "ethd/base.h"
 
-#define ETHD__SETTLED 5e-3 /* s: after it the transmission's stretch is there and no longer swings */
+#define ETHD__SETTLED 5e-3 /* s: then the transmission's stretch is complete and no longer oscillates */
 #define ETHD__UNSURE 0.05  /* error of k that friction, delay and sampling cause where the facts are right */
 #define ETHD__PRIOR 9e-8   /* m^2: weight of the prior, as a sum of (x - mean)^2 */
 
@@ -33,7 +33,7 @@ static inline double ethd__brake_slope(const double *memory) ETHD_RT {
   return (memory[0] + ETHD__PRIOR) / (memory[1] + ETHD__PRIOR);
 }
 
-/* Returns k as far as it is certain: 1 within UNSURE of 1, since the facts are then taken to be right. */
+/* Returns k minus its uncertainty: 1 within UNSURE of 1, since the facts then count as right. */
 static inline double ethd__brake_learnt(const double *memory) ETHD_RT {
   double k = ethd__brake_slope(memory);
   if (k > 1 + ETHD__UNSURE) return k - ETHD__UNSURE;
@@ -60,7 +60,7 @@ static inline void ethd__brake_learner_add(ethd__brake_learner *l, double model,
   l->sxy += x * y;
 }
 
-/* Ends a braking, `deeper` m behind its plan, and puts what it says into the memory. */
+/* Ends a braking, `deeper` m behind its plan, and adds its result to the memory. */
 static inline void ethd__brake_learner_end(ethd__brake_learner *l, double deeper, double learn,
                                            double *memory) ETHD_RT {
   if (l->done) return;

@@ -1,7 +1,7 @@
 #include "ethd/law.h"
 
-/* Hunt and Crossley 1975 with exponent 1: F = -K_e p (1 + c_e p_dot), p = -gap, p_dot = v. The force
-   doesn't jump at the surface, for the damping grows with depth. */
+/* Hunt and Crossley 1975 with exponent 1: F = -K_e p (1 + c_e p_dot), p = -gap, p_dot = v. The force doesn't jump at
+   the surface, since the damping grows with depth. */
 
 enum { K_E, C_E, COUNT };
 

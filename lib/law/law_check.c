@@ -5,7 +5,7 @@
 #include "ethd/law.h"
 #include "line.h"
 
-/* The sizes of a law's struct, by kind: the smallest of ABI 1, and this library's. A longer one was built against a
+/* The sizes of a law's struct, by kind: the smallest of ABI 1, and this library's. A longer struct was built against a
    newer header, whose functions and fields this library doesn't know. */
 static const size_t smallest[] = {ETHD_TRACKING_LAW_MIN, ETHD_CONTACT_LAW_MIN, ETHD_TRANSITION_LAW_MIN};
 static const size_t largest[] = {sizeof(ethd_tracking_law), sizeof(ethd_contact_law), sizeof(ethd_transition_law)};
@@ -41,7 +41,7 @@ static bool gains_are_params(const ethd_law *law) {
   return true;
 }
 
-/* The ABI is checked first, since nothing after it can be trusted when it differs. */
+/* The ABI is checked first: if it differs, the following fields can't be trusted. */
 ethd_status ethd_law_check(const ethd_law *law, ethd_error *error) {
   if (!law) return ethd__error(error, ETHD_E_ARGUMENT, "law");
   if (law->abi != ETHD_ABI) return ethd__refuse(error, ETHD_E_ABI, "abi", (ethd__found){law->abi, ETHD_ABI, ETHD_ABI});

@@ -1,4 +1,4 @@
-/* The state machine of VO-B, for laws that put something before it. */
+/* The state machine of VO-B, for laws that extend it. */
 #ifndef ETHD__LAW_OFFSET_H
 #define ETHD__LAW_OFFSET_H
 
@@ -16,10 +16,10 @@ enum { ETHD__B_D, ETHD__V_TH, ETHD__BETA_MIN, ETHD__EPS_MAX, ETHD__T_MAX, ETHD__
 typedef struct ethd__offset {
   double phase;        /* ETHD_TRANSPARENT, ETHD_BRAKING, ETHD_VO */
   double eps;          /* wall offset, 0 outside of vo */
-  double braked, rest; /* s since braking began, and what its sum still owes (Kahan 1965) */
+  double braked, rest; /* s since braking began, and the compensation of its sum (Kahan 1965) */
 } ethd__offset;
 
-#define ETHD__RESTED 0.05 /* s at a wall after which a ring rests, whatever a noisy speed says */
+#define ETHD__RESTED 0.05 /* s at a wall after which a ring counts as resting, even if a noisy speed differs */
 
 /* All [rt]. */
 void ethd__offset_enter(ethd__offset *s, int phase, double eps) ETHD_RT;

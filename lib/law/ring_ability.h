@@ -1,7 +1,7 @@
-/* What a ring can do along a contact's normal: of the facts those that a law needs to brake it.
+/* A ring's ability along a contact's normal: the facts that a law needs to brake it.
 
    Friction is Coulomb's, which changes its sign over STICTION as a plant's does, and viscous. It helps a ring to brake:
-   with the force F that the guard lets through, the ring's deceleration is at most (F + f_c) / m.            [rt] */
+   with the guard's force limit F, the ring's deceleration is at most (F + f_c) / m. [rt] */
 #ifndef ETHD__LAW_RING_ABILITY_H
 #define ETHD__LAW_RING_ABILITY_H
 
@@ -21,7 +21,7 @@ typedef struct ethd__ring_ability {
 /* Returns a friction or delay, 0 if it isn't known. */
 static inline double ethd__known(double x) ETHD_RT { return x >= 0 ? x : 0; }
 
-/* Returns whether the facts are known without which nothing can be planned. */
+/* Returns whether all facts that a plan needs are known. */
 static inline bool ethd__ring_is_known(const ethd_facts *f) ETHD_RT {
   return f && f->mass > 0 && f->mass < (double)INFINITY && f->force > 0 && f->force < (double)INFINITY &&
          f->finger_age >= 0;

@@ -1,9 +1,9 @@
-/* Estimates where a ring that approaches a surface is, how fast it is, and which acceleration its model leaves out.
+/* Estimates position and speed of a ring that approaches a surface, and the acceleration that its model leaves out.
 
    Fading-memory polynomial filter of the second degree (Morrison 1969, Introduction to Sequential Smoothing and
-   Prediction, chapter 13). To what the model's acceleration leaves of the past distances it fits the parabola of least
-   squares; a sample of j ticks ago has the weight b^j. It predicts, and corrects by the residual e of the
-   measured distance:
+   Prediction, chapter 13). It subtracts the motion by the model's acceleration from the past distances and fits a
+   parabola to the rest by least squares; a sample of j ticks ago has the weight b^j. It predicts, and corrects by the
+   residual e of the measured distance:
 
      d -= v T + (model + w) T^2/2     v += (model + w) T       d < 0: behind the surface, v > 0: towards it
      d += (1 - b^3) e     v -= 3/2 (1 - b^2)(1 - b) e/T     w -= (1 - b)^3 e/T^2

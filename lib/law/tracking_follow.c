@@ -3,7 +3,7 @@
 /* Follows the finger in space, and by J^T in the plane:
 
      F = k eps_x + b eps_v            eps_x = X_f - X, eps_v = V_f - V
-     V = V_f + rate eps_x             a device that is t_d late stays without overshoot up to rate t_d = 1/e */
+     V = V_f + rate eps_x             with a delay t_d there is no overshoot up to rate t_d = 1/e */
 
 enum { K, B, RATE, COUNT };
 

@@ -2,7 +2,7 @@
 
 #include <stdbool.h>
 
-/* Outside the wall the ring tracks, inside it the wall pushes, and nothing is between: the paper's baseline. */
+/* Outside the wall the ring tracks, inside it the wall pushes, without a transition: the paper's baseline. */
 
 static ethd_status step(const double *p, void *block, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
   (void)p, (void)block;

@@ -2,25 +2,25 @@
 
 #include "ethd/law.h"
 
-/* Slows the effector down before the wall, so that it stands there when the finger comes.
+/* Slows the effector down before the wall, so that it stands there when the finger arrives.
 
                       d <= reach, and the finger pushes on          the finger has left: s < release (R_r - R_f)
      transparent or  ------------------------------------> vo  -------------------------------------------------->
      braking: v <= f(d)                                    v = +-f(|d|)    transparent again
 
-   f(d) is the highest speed from which the device stops at the distance d (d_re): a command needs the delay t_d to show
-   (0 where d is that of the place commanded), then the device brakes with a = effort * acceleration:
+   f(d) is the highest speed from which the device stops within the distance d (d_re): a command acts after the delay
+   t_d (0 if d is that of the commanded position), then the device brakes with a = effort * acceleration:
 
      d = v t_d + v^2 / (2 a)    so    f(d) = a (sqrt(t_d^2 + 2 d / a) - t_d) = 2 d / (t_d + sqrt(t_d^2 + 2 d / a))
 
-   The second form has no difference of near numbers. Towards the wall its slope is 1/t_d at most; a command that is held
-   for the period T makes t_d + T of it. The finger is ahead of the effector by s = n.(X_f - X) = d_re - d_fr; it touches
-   at s = R_r - R_f, the gap, which must leave room for  s = v t_d + v^2 / (2 a)  more than tracking's own lag.
+   The second form has no cancellation. Towards the wall its slope is at most 1/t_d; since a command is held for the
+   period T, the delay is t_d + T. The finger is ahead of the effector by s = n.(X_f - X) = d_re - d_fr; it touches at s
+   = R_r - R_f, the gap. The gap must exceed tracking's own lag by v t_d + v^2 / (2 a).
 
-   At the wall the effector is held while the finger is on it, because a tracker that is noisy would pull it back: in
-   state vo its speed along n is f(d), and -f(-d) behind the wall. This brings it to the wall without overshoot, since the
-   place is the commanded one, which isn't late, and f(d) T <= d. It is released once the
-   finger has come back by `release` of the gap. Along the wall it goes on following. */
+   At the wall the effector is held while the finger touches it, because a noisy tracker would pull it back: in state vo
+   its speed along n is f(d), and -f(-d) behind the wall. This brings it to the wall without overshoot, since the
+   commanded position isn't late, and f(d) T <= d. It is released once the finger has returned by `release` of the gap.
+   Along the wall it continues to follow. */
 
 enum { EFFORT, ACCELERATION, REACH, RELEASE, RANGE, COUNT };
 

@@ -8,13 +8,13 @@
         |  '---- d_re > d_beta -----'                                            |
         '----------------------------- d_re > d_beta ----------------------------'
 
-   A tick follows at most one arrow, before it works out the forces. */
+   A tick follows at most one arrow, before it computes the forces. */
 
 static const ethd_param params[ETHD__OFFSET_COUNT] = {ETHD__OFFSET_PARAMS};
 
 _Static_assert(sizeof(ethd__offset) <= ETHD_STATE_MAX, "state");
 
-#define TIME_TOLERANCE 1e-9 /* s: more than the rounding of a sum of periods */
+#define TIME_TOLERANCE 1e-9 /* s: bound on the rounding error of a sum of periods */
 
 void ethd__offset_enter(ethd__offset *s, int phase, double eps) {
   s->phase = phase;
@@ -22,7 +22,7 @@ void ethd__offset_enter(ethd__offset *s, int phase, double eps) {
   s->braked = s->rest = 0;
 }
 
-/* Adds a period to the time of braking by Kahan's summation, so that a long sum is right but for one rounding. */
+/* Adds a period to the time of braking by Kahan's summation, so that a long sum has the error of one rounding. */
 static void add_time(ethd__offset *s, double period) {
   double term = period - s->rest, sum = s->braked + term;
   s->rest = sum - s->braked - term;

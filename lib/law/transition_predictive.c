@@ -5,7 +5,7 @@
 #include "law/ring_ability.h"
 #include "law/ring_observer.h"
 
-/* Brakes before the wall, so that the ring stands still in it when the finger comes.
+/* Brakes before the wall, so that the ring stands still in it when the finger arrives.
 
                    v >= f(d)                     stood, and the finger is at the rim
                   (the curve is met)             or turns back; or t_max
@@ -14,18 +14,19 @@
           |   what can't be seen in time, or is met inside:  offset's machine  <-------'  (until d_re > d_beta)
           '----------------------------------------------------------------->
 
-   A law that reacts at the wall needs v^2/(2a) behind it to stop. This one needs as much before it, in which the
-   finger, which is ahead of the ring by `lag`, mustn't get to the rim:  lag <= gap - v^2/(2a), gap = R_r - R_f. So it
-   works up to the speed v* = sqrt(2 a (gap - lag)).
+   A law that reacts at the wall stops v^2/(2a) behind it. This law brakes over the same distance before the wall.
+   Meanwhile the finger, which is ahead of the ring by `lag`, must not reach the rim: lag <= gap - v^2/(2a), gap = R_r -
+   R_f. So it works up to the speed v* = sqrt(2 a (gap - lag)).
 
-   What the ring can do follows from the facts:  a = effort (F + f_c) / m.
-   Approach: friction is made up for, and the ring is led, by X_f + lead n, so far that v* is over the finger's speed.
-   It begins v t_d + v^2/(2a) before the wall, and the way in which the ring can be led so far.
-   Braking begins on brake_curve.h. The ring's acceleration is the curve's, plus rate (f(d) - v), less the disturbance
-   w, with friction made up for. It is planned anew at each tick from the distance that is left and from what
-   ring_observer.h says about the ring. The same loop then holds the ring, so beta is 0.
+   The facts give the deceleration  a = effort (F + f_c) / m.
+   Approach: friction is compensated, and the tracking reference moves ahead to X_f + lead n, far enough that v* exceeds
+   the finger's speed. It begins at v t_d + v^2/(2a) before the wall, plus the distance that the ring needs to shift by
+   the lead.
+   Braking begins when the ring meets the curve of brake_curve.h. The ring's acceleration is the curve's, plus
+   rate (f(d) - v), minus the disturbance w, with friction compensated. It is planned again at each tick from the
+   remaining distance and the estimates of ring_observer.h. The same loop then holds the ring, so beta is 0.
 
-   Learning: the deceleration is k times that of the facts (brake_learner.h). */
+   Learning: the real deceleration is k times that of the facts (brake_learner.h). */
 
 enum { EFFORT = ETHD__OFFSET_COUNT, RATE, AIM, MARGIN, RANGE, MEMORY, LEARN, COUNT };
 
@@ -42,14 +43,14 @@ static const ethd_param params[COUNT] = {
 
 #define RIM 0.3e-3     /* m: a finger nearer than this counts as at the rim; its estimate has this error */
 #define LEARN_END 5e-4 /* m: learning from a braking ends when the finger is nearer to the rim than this */
-#define STRAYED 2e-3   /* m: a ring that is farther from its prediction met another surface, or ticks are missing */
+#define STRAYED 2e-3   /* m: with a larger prediction error the surface has changed, or ticks are missing */
 #define SLOW 0.05      /* m/s: the approach fades in between a finger at rest and one of this speed */
 
 typedef struct predictive_state {
   ethd__offset offset;
   ethd__ring_observer ring;
   ethd__brake_learner learner;
-  bool observed, ahead, stood; /* the ring is observed; it brakes or is held; it has stood since then */
+  bool observed, ahead, stood; /* the observer runs; the ring brakes or is held; it has stood still since then */
   double time, eps;            /* s since braking began; least depth in which it stood, m */
 } predictive_state;
 
@@ -66,7 +67,7 @@ static ethd__ring_ability ability_of(const double *p, const ethd_contact *c) {
   return out;
 }
 
-/* ---- where it is ---- */
+/* ---- position ---- */
 
 static void observe(const double *p, predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m) {
   double force = c->facts->applied - ethd__ring_friction(m, s->ring.v), model = force / m->mass;
@@ -99,9 +100,9 @@ static bool meets_curve(const double *p, const predictive_state *s, const ethd_c
   return v > 0 && c->v_f > 0 && v >= ethd__brake_curve_speed(&m->curve, d);
 }
 
-/* Reduces the finger's lead over the ring, by a lead, to what leaves the ring room to stop: from so far before the wall
-   on that the ring has time to shift by it. The device would shift the ring by l within 2 sqrt(l / a) and stand beside
-   the finger again; tracking, which does it, is taken to need twice as long. */
+/* Moves the tracking reference ahead of the finger, so that the lag leaves the ring room to stop. It begins early
+   enough for the ring to shift by the lead. The device could shift the ring by l within 2 sqrt(l / a); tracking, which
+   does it, is assumed to need twice as long. */
 static void approach(const double *p, const predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m,
                      ethd_ruling *out) {
   const ethd_facts *f = c->facts;
@@ -134,7 +135,7 @@ static void brake(const double *p, const predictive_state *s, const ethd_contact
   out->feed = within(m->mass * a + ethd__ring_friction(m, v), -m->force, m->force);
 }
 
-/* Returns true when the wall takes over, where the ring has stood. The finger's push doesn't count. */
+/* Returns true when the wall takes over, at the position where the ring stood. The finger's push doesn't count. */
 static bool is_over(const double *p, predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m) {
   double left = clearance(c), depth = most(0, -c->d_re), gap = c->facts->ring_radius - c->facts->finger_radius;
   s->time += c->period;
@@ -156,7 +157,7 @@ static bool is_over(const double *p, predictive_state *s, const ethd_contact *c,
 
 /* ---- the law ---- */
 
-/* Leaves what can't be seen to offset. */
+/* Uses the offset law if the facts for a plan are unknown. */
 static void step_blindly(const double *p, predictive_state *s, const ethd_contact *c, ethd_ruling *out) {
   if (s->ahead) ethd__offset_enter(&s->offset, c->d_re < 0 ? ETHD_BRAKING : ETHD_TRANSPARENT, 0);
   s->ahead = s->observed = false;

@@ -1,9 +1,9 @@
-/* atan2: swap and mirror to q = low/high in [0, 1], turn by the angle of the nearest c = j/8, and
+/* atan2: swap and mirror to q = low/high in [0, 1], rotate by the angle of the nearest c = j/8, and
 
      atan q = atan c + atan t,  t = (low - c high)/(high + c low),  |t| <= 1/16.
 
-   t is kept to some 70 bits. Numerator and denominator are exact, since c has three bits; the quotient is a short one,
-   whose product with the denominator is exact, plus what the remainder gives.
+   t is accurate to about 70 bits. Numerator and denominator are exact, since c has three bits. The quotient is a short
+   one, whose product with the denominator is exact, plus the quotient of the remainder.
 
    Coefficients: (atan(t)/t - 1)/z, z = t^2, interpolated with 80 digits at the zeros of a Chebyshev
    polynomial stretched so that its first zero lies on z = 0 and its range ends at 1/16^2, then rounded.

@@ -112,7 +112,7 @@ static double tanh_small(double x) {
   return x + x * z * p;
 }
 
-/* The quotient's first 26 bits times the denominator's first 26 are exact; what remains gives the rest. */
+/* The product of the quotient's and the denominator's first 26 bits is exact; the remainder gives the rest. */
 static double tanh_large(double x) {
   power e = raise(2 * x);
   double scale = power_of_two(e.k), h = e.m.hi * scale, l = e.m.lo * scale;

@@ -73,7 +73,7 @@ static angle reduce_exactly(double x) {
   unsigned n = (unsigned)window(p, point) & 3;
   uint64_t f1 = window(p, point - 64), f0 = window(p, point - 128);
   bool above = f1 >> 63;
-  if (above) { /* more than half a quarter turn: count down from the next multiple */
+  if (above) { /* more than half a quadrant: count down from the next multiple */
     f0 = ~f0 + 1;
     f1 = ~f1 + (f0 == 0);
     n++;
@@ -84,8 +84,8 @@ static angle reduce_exactly(double x) {
   return (angle){r, negative ? 0 - n : n};
 }
 
-/* Cody and Waite 1980: n times each of the first two parts of pi/2 (33 bits each) is exact. What is left
-   is wrong by 2^-98 at most, too much only where r is tiny. */
+/* Cody and Waite 1980: n times each of the first two parts of pi/2 (33 bits each) is exact. The error of the rest is
+   2^-98 at most, too much only if r is tiny. */
 static angle reduce(double x) {
   if (islessequal(fabs(x), 0x1.921fb54442d18p-1)) return (angle){{x, 0}, 0};
   if (!isless(fabs(x), 0x1p20)) return isfinite(x) ? reduce_exactly(x) : (angle){{NAN, 0}, 0};

@@ -1,5 +1,5 @@
-/* Sine and cosine of two angles side by side. Every operation is that of trig.c, so the bits are those of ethd_sin and
-   ethd_cos, in half the time. */
+/* Sine and cosine of two angles side by side, with the operations of trig.c: the same bits as ethd_sin and ethd_cos, in
+   half the time. */
 #ifndef ETHD__MATHS_TWO_WAVES_H
 #define ETHD__MATHS_TWO_WAVES_H
 
@@ -46,7 +46,7 @@ static inline two two_cosine(two x, two rest) {
 /* Returns false, which is rare, for angles that are huge, tiny, near a multiple of pi/2, or NaN: trig.c does those. */
 static inline bool two_is_plain(double x, double r) { return fabs(x) < 0x1p20 && fabs(r) >= 0x1p-36; }
 
-/* The quadrant n exchanges sine and cosine and turns signs. Masks do so, since branches on n would be mispredicted. */
+/* The quadrant n exchanges sine and cosine and changes signs, by masks, since branches on n would be mispredicted. */
 static inline two_waves two_sincos(two x) {
   two_angles a = two_reduce(x);
   if (!two_is_plain(x[0], a.r[0]) || !two_is_plain(x[1], a.r[1]))

@@ -2,8 +2,8 @@
 
 #include "scene/build.h"
 
-#define DIRECTIONS 8 /* how many are tried over a quarter turn, after which a box looks the same */
-#define SAMPLES 32   /* discs that judge a direction */
+#define DIRECTIONS 8 /* directions tried over 90 degrees, after which boxes repeat */
+#define SAMPLES 32   /* discs used to compare directions */
 
 static const float directions[DIRECTIONS][2] = {
     {1, 0},
@@ -30,7 +30,7 @@ static void widen(box_span *s, double v, double r) {
   s->max = v + r > s->max ? v + r : s->max;
 }
 
-/* Every step-th disc of a cloud, from `from` on, up to but without `to`. */
+/* Every step-th disc of a cloud in [from, to). */
 typedef struct run {
   const ethd__cloud *cloud;
   size_t from, to, step;
@@ -51,14 +51,14 @@ static rectangle around(const run *of, float c, float s) {
 
 static double width(box_span s) { return s.max - s.min; }
 
-/* Returns the area from which the box is nearer than `near`, less what is the same for any box. The smaller it is, the
-   fewer queries open the box. */
+/* Returns the area of points nearer to the box than `near`, minus the part that is equal for all boxes. The smaller it
+   is, the fewer queries open the box. */
 static double cost(const rectangle *b) {
   double w = width(b->u), h = width(b->v), near = 0.01;
   return w * h + near * (w + h);
 }
 
-/* Finds the rectangle that is turned along the line from the first disc to the last. */
+/* Finds the rectangle whose u axis is along the line from the first disc to the last. */
 static rectangle along(const run *of) {
   ethd_vec e = ethd_vec_sub(of->cloud->points[of->to - 1], of->cloud->points[of->from]);
   double length = ethd_vec_norm(e);
@@ -77,7 +77,7 @@ static rectangle fit(const ethd__cloud *k, size_t from, size_t to) {
   return around(&all, best.c, best.s);
 }
 
-/* Rounds the middle to a float and lets the half width grow by as much as that may cut off. */
+/* Rounds the middle to a float and increases the half width by the possible rounding error. */
 static void set(box_span s, float *middle, float *half) {
   *middle = (float)((s.min + s.max) / 2);
   double reach = fmax(s.max - (double)*middle, (double)*middle - s.min);

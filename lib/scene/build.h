@@ -4,7 +4,7 @@
 
 #include "scene/tree.h"
 
-/* An object whose place among the leaves is still sought. */
+/* An object that has no place among the leaves yet. */
 typedef struct ethd__item {
   uint32_t at[2]; /* middle of its bounds: 0 to UINT32_MAX across the scene's extent in x and y */
   uint32_t id;    /* its index in the definition */
@@ -19,13 +19,13 @@ typedef struct ethd__cloud {
   const double *radii;
 } ethd__cloud;
 
-/* Makes lane `lane` a small box around the discs from `from` on, up to but without `to`. */
+/* Makes lane `lane` a small box around the discs [from, to). */
 void ethd__box_fit(const ethd__cloud *cloud, size_t from, size_t to, ethd__node *node, size_t lane);
 
 /* Marks a lane as empty. */
 void ethd__box_clear(ethd__node *node, size_t lane);
 
-/* Builds the nodes and slopes of a scene that has all else. `room`: ethd__nodes_room bytes, aligned like malloc's. */
+/* Builds the nodes and slopes of an otherwise complete scene. `room`: ethd__nodes_room bytes, aligned as by malloc. */
 size_t ethd__nodes_room(const ethd_scene *scene);
 void ethd__nodes_build(ethd_scene *scene, void *room);
 

@@ -2,7 +2,7 @@
 
 #include <float.h>
 
-/* Where x lies relative to edge k from a to b: e = b - a, u = x - a.
+/* The position of x relative to edge k from a to b: e = b - a, u = x - a.
 
      along = e.u        0 at a, e.e at b
      across = e x u     > 0: x to the left; |across|/|e| is the distance from the line */
@@ -27,7 +27,7 @@ static inline edge edge_of(const ethd__chain *chain, size_t k, ethd_vec x) {
 
 static inline part part_of(const edge *g) { return g->along <= 0 ? AT_START : g->along >= g->ee ? AT_END : BETWEEN; }
 
-/* Does the same, but a foot that rounding can't tell from a vertex counts as at the vertex, for both edges there. */
+/* Does the same, but a foot that equals a vertex within rounding counts as at the vertex, for both edges there. */
 static part settled_part_of(const edge *g) {
   double e = fabs(g->e.x) + fabs(g->e.y), u = fabs(g->u.x) + fabs(g->u.y);
   double margin = 8 * DBL_EPSILON * e * (e + u);
@@ -40,7 +40,7 @@ static bool edge_before(const ethd__chain *chain, size_t k, size_t *out) {
   return k || chain->closed;
 }
 
-/* The edge that starts at point k; false: the chain has none. */
+/* Finds the edge that starts at point k; false: the chain has none. */
 static bool edge_after(const ethd__chain *chain, size_t k, size_t *out) {
   *out = k < chain->edges ? k : 0;
   return k < chain->edges || chain->closed;
@@ -55,7 +55,7 @@ static ethd_vec left_of(ethd_vec v) {
 
 /* ---- vertices ---- */
 
-/* A vertex and the directions of its edges; at an end both are that of its one edge. */
+/* A vertex and the directions of its edges; at an end both are the direction of its one edge. */
 typedef struct vertex {
   ethd_vec p, in, out;
   int turn;   /* of a sharp turn: +1 left, -1 right, 0 straight back */
@@ -92,7 +92,7 @@ static ethd_vec left_normal(const vertex *v) {
 
 /* ---- touches ---- */
 
-/* Returns n from a surface's left normal: into a polygon, or at a thin wall away from x. */
+/* Returns n from a surface's left normal: into a polygon; for a thin wall away from x. */
 static ethd_vec inward(const ethd__chain *chain, int side, ethd_vec left) {
   return ethd_vec_scale(chain->turn ? chain->turn : side > 0 ? -1 : 1, left);
 }
@@ -106,7 +106,7 @@ static void touch_edge(const ethd__chain *chain, size_t k, const edge *g, ethd_t
   out->feature = (int32_t)(2 * k);
 }
 
-/* Sets all but the side, which costs the most to find. */
+/* Sets all fields except the side, which is the most expensive. */
 static void meet_vertex(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) {
   ethd_vec p = point(chain, k), gap = ethd_vec_sub(p, x);
   out->distance = ethd_vec_norm(gap);
@@ -172,8 +172,9 @@ static bool contains(const ethd__chain *chain, ethd_vec x) {
   return inside;
 }
 
-/* Turns n and the distance's sign by whether x is inside; n comes as seen from outside. Near a needle's tip the edge
-   that rounding makes the nearest may show x its other face. On the surface itself an edge's own normal stays. */
+/* Sets the signs of n and the distance by whether x is inside; at the call n is that of a point outside. Near a
+   needle's tip, rounding may choose the edge whose other face is towards x. On the surface itself an edge's own normal
+   stays. */
 static void sign(const ethd__chain *chain, bool inside, ethd_touch *out) {
   bool at_vertex = out->feature % 2;
   bool turned = at_vertex ? inside && out->distance > ETHD__TINY
@@ -199,8 +200,8 @@ void ethd__chain_nearest(const ethd__chain *chain, ethd_vec x, ethd_touch *out) 
 
 /* ---- local minima ---- */
 
-/* Returns where x lies along the edge before vertex k. At the start of an open chain, where there is no such edge, x
-   counts as past it. */
+/* Returns the position of x along the edge before vertex k. The start of an open chain has no such edge; there x counts
+   as past it. */
 static part part_before(const ethd__chain *chain, size_t k, ethd_vec x) {
   size_t i;
   if (!edge_before(chain, k, &i)) return AT_END;

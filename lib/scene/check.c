@@ -22,7 +22,7 @@ static size_t append_number(char name[64], size_t at, size_t value) {
   return ethd__append(name, at, digits + n);
 }
 
-/* Returns true if rounding can't tell two points apart, or the square of their distance would be lost. */
+/* Returns true if two points differ only by rounding, or the square of their distance would underflow. */
 static bool are_equal(ethd_vec a, ethd_vec b) {
   ethd_vec e = ethd_vec_sub(b, a);
   double largest = fmax(fmax(fabs(a.x), fabs(a.y)), fmax(fabs(b.x), fabs(b.y)));
@@ -56,7 +56,7 @@ static ethd_status check_simple(const ethd_object_def *def, void *room, ethd_err
 
 static ethd_status check_chain(const ethd_object_def *def, void *room, ethd_error *error) {
   size_t n = def->count / 2;
-  /* unreachable: in a test, for it takes 17 GB of numbers */
+  /* unreachable: in a test, since it needs 17 GB of numbers */
   if (n > POINTS_MAX) return refuse_object(def, ETHD_E_FULL, "points", (ethd__found){(double)n, 0, POINTS_MAX}, error);
   for (size_t k = 0; k < n; k++) {
     size_t next = k + 1 < n ? k + 1 : 0, pair[2] = {k, next};
@@ -96,7 +96,7 @@ size_t ethd__check_room(const ethd_scene_def *def) {
 ethd_status ethd__check_scene(const ethd_scene_def *def, void *room, ethd_error *error) {
   if ((def->object_count && !def->objects) || (def->material_count && !def->materials))
     return ethd__error(error, ETHD_E_ARGUMENT, "scene");
-  if (def->object_count > INT32_MAX) /* unreachable: in a test, for it takes 80 GB of objects */
+  if (def->object_count > INT32_MAX) /* unreachable: in a test, since it needs 80 GB of objects */
     return ethd__refuse(error, ETHD_E_FULL, "objects", (ethd__found){(double)def->object_count, 0, INT32_MAX});
   ethd_status status = ethd__check_materials(def->materials, def->material_count, error);
   for (size_t i = 0; i < def->object_count && !status; i++) status = check_object(def, &def->objects[i], room, error);

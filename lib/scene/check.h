@@ -1,4 +1,4 @@
-/* Whether a scene can be made of what was given. [main] */
+/* Checks the definition of a scene. [main] */
 #ifndef ETHD__SCENE_CHECK_H
 #define ETHD__SCENE_CHECK_H
 
@@ -6,7 +6,7 @@
 
 #include "ethd/scene.h"
 
-/* Checks what ethd_scene_create promises to check. `room`: ethd__check_room(def) bytes, aligned like malloc's. */
+/* Makes the checks that ethd_scene_create promises. `room`: ethd__check_room(def) bytes, aligned like malloc's. */
 size_t ethd__check_room(const ethd_scene_def *def);
 ethd_status ethd__check_scene(const ethd_scene_def *def, void *room, ethd_error *error);
 

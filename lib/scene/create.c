@@ -26,8 +26,7 @@ static size_t reserve(size_t *bytes, size_t size) {
   return at;
 }
 
-/* Works out how much of everything there is, and where it goes. The nodes of chains come first, so that slopes, which
-   only they have, take no room for others. */
+/* Computes the sizes and offsets of all arrays. The nodes of chains come first, since only they have slopes. */
 static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *error) {
   size_t numbers = 0, nodes = 0, endless = 0;
   for (size_t i = 0; i < def->object_count; i++) {
@@ -38,7 +37,7 @@ static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *er
     }
     endless += is_endless(&def->objects[i]);
   }
-  if (numbers > UINT32_MAX) /* unreachable: in a test, for it takes 34 GB of numbers */
+  if (numbers > UINT32_MAX) /* unreachable: in a test, since it needs 34 GB of numbers */
     return ethd__refuse(error, ETHD_E_FULL, "numbers", (ethd__found){(double)numbers, 0, UINT32_MAX});
   s->object_count = (uint32_t)def->object_count;
   s->material_count = (uint32_t)def->material_count;
@@ -64,7 +63,7 @@ typedef struct bounds {
 
 static const bounds nowhere = {INFINITY, -INFINITY, INFINITY, -INFINITY};
 
-/* Comparisons are quicker than fmin and fmax, which take care of NaN too. */
+/* Comparisons are faster than fmin and fmax, which handle NaN too. */
 static double lesser(double a, double b) { return a < b ? a : b; }
 static double greater(double a, double b) { return a > b ? a : b; }
 
@@ -89,7 +88,7 @@ static bounds bounds_of(const ethd_object_def *def) {
   return b;
 }
 
-/* The trees' frame: centre and scale bring the bounds to within [-1, 1]. */
+/* The trees' frame: centre and scale map the bounds into [-1, 1]. */
 static void frame(ethd_scene *s, bounds b) {
   int exponent = 0;
   s->x_min = b.x_min, s->x_max = b.x_max, s->y_min = b.y_min, s->y_max = b.y_max;
@@ -119,7 +118,7 @@ static ethd_vec point(const double *p, size_t k) {
   return r;
 }
 
-/* Returns a polygon's winding, which is its turn at the first point in the order of x, then y, where it is convex. */
+/* Returns a polygon's winding: its turn at the first point in the order of x, then y, since it is convex there. */
 static int turn_of(const double *p, size_t n) {
   size_t k = 0;
   for (size_t i = 1; i < n; i++)
@@ -219,7 +218,7 @@ ethd_status ethd__scene_make(const ethd_scene_def *def, const int32_t *ids, ethd
   empty.outer = INFINITY;
   *out = NULL;
   ethd_status status = plan(def, &empty, error);
-  if (status) return status; /* unreachable: only more numbers than a test has fail */
+  if (status) return status; /* unreachable: it fails only with more numbers than a test has */
   ethd_scene *scene = aligned_alloc(64, empty.bytes);
   if (scene) {
     memset(scene, 0, empty.bytes);

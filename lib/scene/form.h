@@ -1,5 +1,5 @@
-/* How shapes are written: their names and numbers, and whether numbers fit. A world of the plane and one of space share
-   this, and the reader of text.h. [main] */
+/* The text form of shapes: their names and numbers, and checks of numbers. Worlds of the plane and of space share this
+   and the reader of text.h. [main] */
 #ifndef ETHD__SCENE_FORM_H
 #define ETHD__SCENE_FORM_H
 
@@ -9,7 +9,7 @@
 #include "ethd/surface.h"
 
 #define ETHD__COORDINATE_MAX 1e6 /* m */
-#define ETHD__GIVEN_MAX 9        /* the most numbers that a shape without a list of points is given by */
+#define ETHD__GIVEN_MAX 9        /* the most numbers of a shape without a list of points */
 
 typedef enum ethd__number_kind {
   ETHD__COORDINATE, /* m, of either sign; part of the scene's extent */
@@ -19,14 +19,14 @@ typedef enum ethd__number_kind {
 
 typedef struct ethd__form {
   const char *name;
-  const char *text; /* the numbers as a scene's file has them, for messages and help */
+  const char *text; /* the numbers in the form of a scene's file, for messages and help */
   struct {
     const char *name;
     ethd__number_kind kind;
-  } numbers[ETHD__GIVEN_MAX]; /* of a list of points: those of one point */
-  size_t count;               /* of numbers; the least, if there may be more */
+  } numbers[ETHD__GIVEN_MAX]; /* for a list of points: those of one point */
+  size_t count;               /* number of numbers; the least, if there may be more */
   size_t step, most;          /* `step` more may follow, and again up to `most`; step 0: no more */
-  size_t cycle;               /* numbers of one point, after which their names repeat; 0: they don't */
+  size_t cycle;               /* numbers of one point, after which the names repeat; 0: they don't repeat */
 } ethd__form;
 
 /* The shapes of one world, numbered from 0. */
@@ -38,7 +38,7 @@ typedef struct ethd__world {
 
 extern const ethd__world ethd__plane, ethd__space;
 
-/* Returns where number k of an object is in its form. */
+/* Returns the index in the form of an object's number k. */
 static inline size_t ethd__number_of(const ethd__form *f, size_t k) { return f->cycle ? k % f->cycle : k; }
 
 /* Appends to the name of an error as much of `word` as fits, and returns the name's new length. */

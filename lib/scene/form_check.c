@@ -3,7 +3,7 @@
 #include "scene/form.h"
 
 size_t ethd__append(char name[64], size_t at, const char *word) {
-  while (*word && at < 63) name[at++] = *word++; /* unreachable: the cut, for the longest name has 53 characters */
+  while (*word && at < 63) name[at++] = *word++; /* unreachable: the cut, since the longest name has 53 characters */
   name[at] = 0;
   return at;
 }

@@ -19,7 +19,8 @@ void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out) {
   }
 }
 
-/* Returns how far an object's farthest point is from the base joint: no point of a hull is farther than its discs. */
+/* Returns the largest distance of an object's points from the base joint: no point of a hull is farther than its
+   discs. */
 static double farthest(const ethd_scene *scene, const ethd__object *o) {
   const ethd__shape *s = &ethd__shapes[o->shape];
   const double *kept = ethd__numbers(scene, o);
@@ -33,7 +34,7 @@ static double farthest(const ethd_scene *scene, const ethd__object *o) {
 }
 
 /* An object is in one piece, so if its nearest point lies within the outer circle and its farthest beyond the inner
-   one, some of it lies between the two. Where a circle is NaN, nothing lies beyond it. */
+   one, a part of it lies between the two. No point lies beyond a circle that is NaN. */
 bool ethd__object_is_within(const ethd_scene *scene, const ethd__object *o, double inner, double outer) {
   ethd_touch nearest;
   ethd__object_nearest(scene, o, (ethd_vec){0, 0}, &nearest);

@@ -22,7 +22,7 @@ size_t ethd__nodes_room(const ethd_scene *s) {
   return disc_count(s) * (sizeof(ethd_vec) + sizeof(double)) + (s->object_count + (size_t)1) * sizeof(size_t);
 }
 
-/* ---- what spans an object ---- */
+/* ---- the discs of the objects ---- */
 
 static size_t put_object(build *b, size_t n, const ethd__object *o) {
   const ethd_scene *s = b->scene;
@@ -63,19 +63,20 @@ typedef struct strip {
   bool closed;
 } strip;
 
-/* Returns |across| / along of edge k against the axis, INFINITY if it goes the other way. */
+/* Returns |across| / along of edge k against the axis, INFINITY if it has the opposite direction. */
 static double slope_of(const strip *t, size_t k, ethd_vec axis) {
   ethd_vec e = ethd_vec_sub(t->points[k + 1], t->points[k]);
   double along = ethd_vec_dot(axis, e);
   return along > 0 ? fabs(ethd_vec_cross(axis, e)) / along : INFINITY;
 }
 
-/* How far across x lies is known to 2^-20 of its distance; a steeper slope would multiply that error by too much. */
+/* The position of x across the axis is exact to 2^-20 of its distance; a steeper slope would multiply that error by too
+   much. */
 #define STEEPEST 8
 
 /* Returns the steepest slope of edges [from, to) against the box's axis (c, s), and of one more edge on each side, on
-   which the vertices at both ends depend. It is FLT_MAX, which rules nothing out, when that slope can't be used and at
-   the ends of an open chain. */
+   which the vertices at both ends depend. It is FLT_MAX, which excludes no box, if that slope can't be used and at the
+   ends of an open chain. */
 static float steepest(const strip *t, size_t from, size_t to, float c, float s) {
   if (!t->closed && (from == 0 || to == t->edges)) return FLT_MAX;
   ethd_vec axis = {c, s};

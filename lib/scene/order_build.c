@@ -1,11 +1,11 @@
-/* The order of the leaves. All items are split in two by a median in x or y, whichever they are wider in, and each part
-   is split again until it fits into one box of the level; then the next level is split in the same way. Parts are whole
-   numbers of full boxes, so only the last node of a level stays partly empty. */
+/* The order of the leaves. All items are split in two by a median in the wider of x and y, and each part is split again
+   until it fits into one box of the level; then the next level is split in the same way. Parts are whole numbers of
+   full boxes, so only the last node of a level stays partly empty. */
 #include "scene/build.h"
 
 #define SMALL 12 /* items that are sorted by insertion */
 
-/* Returns an item's rank along one axis; the id makes all ranks different. */
+/* Returns an item's rank along one axis; the id makes all ranks distinct. */
 static uint64_t rank(const ethd__item *i, int side) { return (uint64_t)i->at[side] << 32 | i->id; }
 
 static void swap(ethd__item *a, ethd__item *b) {
@@ -32,7 +32,7 @@ static uint64_t pivot(const ethd__item *p, size_t n, int side) {
   return median(m[0], m[1], m[2]);
 }
 
-/* Moves the items up to rank `most` to the front; returns how many they are. No branch depends on the items' order. */
+/* Moves the items up to rank `most` to the front; returns their number. No branch depends on the items' order. */
 static size_t divide(ethd__item *p, size_t n, uint64_t most, int side) {
   size_t low = 0;
   for (size_t i = 0; i < n; i++) {

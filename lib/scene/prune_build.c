@@ -4,7 +4,7 @@
 #include "fp_mode.h"
 #include "scene/scene.h"
 
-/* Collects the objects that stay, in the order of their ids; returns how many they are. */
+/* Collects the objects that stay, in the order of their ids; returns their number. */
 static size_t gather(const ethd_scene *scene, double inner, double outer, ethd_object_def *defs, int32_t *ids) {
   const uint32_t *places = ETHD__ARRAY(scene, uint32_t, places_at);
   size_t n = 0;
@@ -16,8 +16,8 @@ static size_t gather(const ethd_scene *scene, double inner, double outer, ethd_o
   return n;
 }
 
-/* Takes over the slack, so that decisions which depend on rounding are those of the whole scene, and notes what was
-   left out. */
+/* Takes over the slack, so that decisions which depend on rounding are those of the whole scene, and records the
+   dropped objects. */
 static void mark(const ethd_scene *whole, double inner, double outer, ethd_scene *scene) {
   scene->slack = whole->slack;
   scene->dropped = whole->dropped + (whole->object_count - scene->object_count);

@@ -1,10 +1,10 @@
 /* A scene in memory: one block without pointers, every array found by its offset.
 
-     objects    what each is and where its numbers are; in the order of the tree's leaves, endless ones last
+     objects    shape, material and first number of each; in the order of the tree's leaves, endless ones last
      places     of the objects, in the order of their ids
-     numbers    those that were given for the object, and what its shape's row (shapes.h) adds; of a polygon the
-                points, with the first of them again at the end
-     trees      of the chains that have a tree of their own (tree.h)
+     numbers    the given ones of each object, and those that its shape's row (shapes.h) adds; for a polygon the
+                points, with the first one again at the end
+     trees      of the chains with a tree of their own (tree.h)
      nodes      of those trees, then of the tree of all objects
      slopes     one for each box of a chain's tree */
 #ifndef ETHD__SCENE_SCENE_H
@@ -27,7 +27,7 @@ typedef struct ethd__object {
   bool closed; /* the chain's last point is its first */
 } ethd__object;
 
-#define ETHD__LEVELS 12 /* 8^11 leaves are more than there can be */
+#define ETHD__LEVELS 12 /* 8^11 leaves are more than are possible */
 
 /* The nodes of level l start at first[l]; see tree.h. */
 typedef struct ethd__tree {
@@ -42,8 +42,8 @@ struct ethd_scene {
   size_t nodes_at, objects_at, numbers_at, trees_at, places_at, slopes_at, materials_at;
   ethd__tree tree;
   uint32_t object_count, number_count, tree_count, node_count, material_count;
-  uint32_t dropped;    /* objects that were left out because an arm can't reach them */
-  double inner, outer; /* m: nothing is left out between these distances from the base */
+  uint32_t dropped;    /* objects left out because an arm can't reach them */
+  double inner, outer; /* m: no object between these distances from the base is left out */
   size_t bytes;
   double x_min, x_max, y_min, y_max; /* extent of all but endless objects; min > max: there are none */
 };
@@ -77,15 +77,15 @@ static inline ethd_vec ethd__chain_point(const ethd__chain *chain, size_t k) {
   return ethd_vec_of(chain->points + 2 * k);
 }
 
-/* Finds the nearest point of a chain; a polygon's distance is signed. Sets distance, point, n and feature; `side` means
-   nothing then. */
+/* Finds the nearest point of a chain; a polygon's distance is signed. Sets distance, point, n and feature; `side` is
+   then undefined. */
 void ethd__chain_nearest(const ethd__chain *chain, ethd_vec x, ethd_touch *out) ETHD_RT;
 
 /* Does the same when edge k is known to be nearest and, for a polygon, whether x is inside. */
 void ethd__chain_touch(const ethd__chain *chain, size_t k, ethd_vec x, bool inside, ethd_touch *out) ETHD_RT;
 
 /* Finds the first local minimum of the distance at edge `from` or later; vertex k comes before edge k. Returns the edge
-   to go on from, 0 when there is no minimum. x is outside of a polygon; only its surfaces that face x count. */
+   at which to continue, 0 if there is no minimum. x is outside of a polygon; only its surfaces that face x count. */
 size_t ethd__chain_minimum(const ethd__chain *chain, ethd_vec x, size_t from, ethd_touch *out) ETHD_RT;
 
 /* Returns true if edge k, or vertex k before it, has a local minimum; k = edges is the chain's end. x is passed by its
@@ -95,8 +95,8 @@ bool ethd__chain_minimum_at(const ethd__chain *chain, size_t k, const ethd_vec *
 /* Returns true if the ray from x to the right crosses the edge from a to b; exact. */
 bool ethd__edge_crossed(ethd_vec a, ethd_vec b, ethd_vec x) ETHD_RT;
 
-/* Sets what every touch of this object has: its number and material, and 0 for the feature and the side where the
-   contract says so. */
+/* Sets the fields that all touches of this object share: its number and material, and 0 for the feature and the side if
+   the contract says so. */
 static inline void ethd__label(const ethd__object *o, ethd_touch *out) {
   out->object = o->id;
   out->material = o->material;
@@ -104,17 +104,17 @@ static inline void ethd__label(const ethd__object *o, ethd_touch *out) {
   if (o->turn) out->side = 0;
 }
 
-/* Finds the nearest point of an object, by its closed form or edge by edge. The touch is complete but for a chain's
+/* Finds the nearest point of an object, by its closed form or edge by edge. The touch is complete except for a chain's
    side. */
 void ethd__object_nearest(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_touch *out) ETHD_RT;
 
 /* Builds a scene from a checked definition. `ids`: the objects' numbers, rising; NULL: 0, 1, ... [main] */
 ethd_status ethd__scene_make(const ethd_scene_def *def, const int32_t *ids, ethd_scene **out, ethd_error *error);
 
-/* Gives the distances from the base between which objects count for this arm, m. */
+/* Gives the distances from the base between which this arm can meet objects, m. */
 void ethd__scene_annulus(const ethd_arm *arm, double radius, double *inner, double *outer);
 
-/* Returns true if any of the object lies between these distances from the base. */
+/* Returns true if a part of the object lies between these distances from the base. */
 bool ethd__object_is_within(const ethd_scene *scene, const ethd__object *o, double inner, double outer);
 
 /* Returns the turn from a over b to c: +1 counter-clockwise, -1 clockwise, 0 on a line; exact. */

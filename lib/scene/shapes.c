@@ -1,5 +1,5 @@
-/* The rows of all shapes, and the closed forms behind them. Nothing here needs the system, so the file may be on both
-   threads' sides. */
+/* The rows of all shapes, and their closed forms. No function here needs the system, so both [main] and [rt] may use
+   them. */
 #include "scene/shapes.h"
 
 #include <float.h>
@@ -29,7 +29,7 @@ static ethd_status check_normal(const ethd_object_def *def, ethd_error *error) {
 
 static void keep_unit(double *p) {
   double length = sqrt(p[0] * p[0] + p[1] * p[1]);
-  if (fabs(length - 1) <= 4 * DBL_EPSILON) return; /* a normal that was divided before stays as it is */
+  if (fabs(length - 1) <= 4 * DBL_EPSILON) return; /* an already normalised normal stays as it is */
   for (int i = 0; i < 3; i++) p[i] /= length;
 }
 
@@ -41,7 +41,7 @@ static void halfplane(const double *p, ethd_vec x, ethd_touch *out) ETHD_RT {
 
 /* ---- circle {x, y, r} and capsule {x1, y1, x2, y2, r} ---- */
 
-/* Finds the nearest point of the disc about c. At its centre, where every direction is as good, n is `any`. */
+/* Finds the nearest point of the disc about c. At its centre, where n is undefined, n is `any`. */
 static void disc(ethd_vec c, double r, ethd_vec any, ethd_vec x, ethd_touch *out) {
   ethd_vec gap = ethd_vec_sub(c, x);
   double distance = ethd_vec_norm(gap);
@@ -79,7 +79,7 @@ static ethd__disc capsule_disc(const double *p, size_t k) { return (ethd__disc){
 
 static void keep_turn(double *p) { ethd_sincos(p[4], &p[6], &p[5]); }
 
-/* The corners, as discs of no radius. */
+/* The corners, as discs of radius 0. */
 static ethd__disc box_disc(const double *p, size_t k) {
   double u = k & 1 ? p[2] : -p[2], v = k & 2 ? p[3] : -p[3];
   return (ethd__disc){vec(p[0] + (p[5] * u - p[6] * v), p[1] + (p[6] * u + p[5] * v)), 0};

@@ -1,4 +1,4 @@
-/* What a scene knows of each shape: one row of a table. Nothing else in lib asks for a shape by its name.
+/* The properties of each shape: one row of a table. No other code in lib depends on a shape by name.
 
    A closed form (half-plane, circle ...) has a fixed count of numbers and a function for its nearest point. A chain
    (polygon, segment, polyline) is a list of points; chain.c works for all of them. */
@@ -20,15 +20,15 @@ typedef struct ethd__shape {
   bool is_chain;
   bool is_closed; /* the chain is closed by an edge to its first point and bounds a solid */
 
-  /* All of the following belong to closed forms. `kept` numbers are the given ones and what `keep` adds. */
+  /* The following fields belong to closed forms. `kept` numbers are the given ones and those that `keep` adds. */
 
   /* Checks what the range of one number can't express; NULL: there is nothing to check. [main] */
   ethd_status (*check)(const ethd_object_def *def, ethd_error *error);
-  /* Turns a copy of the given numbers into what a scene keeps; NULL: the copy is kept as it is. [main] */
+  /* Converts a copy of the given numbers into the kept ones; NULL: the copy is kept as it is. [main] */
   void (*keep)(double *kept);
-  size_t added; /* numbers that `keep` puts behind the given ones */
-  /* The object lies in the convex hull of the discs, which should fit closely, since bounds and reach are the hull's. 0
-     discs: it is endless, and in no tree. [main] */
+  size_t added; /* numbers that `keep` appends to the given ones */
+  /* The convex hull of the discs contains the object. It should fit closely, since bounds and reach are the hull's. 0
+     discs: the object is endless, and in no tree. [main] */
   size_t discs;
   ethd__disc (*disc)(const double *kept, size_t k);
   /* Sets distance, point and n of the nearest point of the surface. */
@@ -37,13 +37,13 @@ typedef struct ethd__shape {
 
 extern const ethd__shape ethd__shapes[ETHD_SHAPE_COUNT];
 
-/* Returns how many numbers a scene keeps of an object: polygons repeat their first point. */
+/* Returns the number of kept numbers of an object: polygons repeat their first point. */
 static inline size_t ethd__kept_count(const ethd_object_def *o) {
   const ethd__shape *s = &ethd__shapes[o->shape];
   return o->count + (s->is_closed ? 2 : s->added);
 }
 
-/* Writes the numbers that a scene keeps, ethd__kept_count of them. [main] */
+/* Writes the kept numbers, ethd__kept_count of them. [main] */
 void ethd__keep(const ethd_object_def *o, double *kept);
 
 static inline size_t ethd__disc_count(const ethd__object *o) {

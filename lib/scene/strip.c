@@ -8,7 +8,7 @@ static const float *slopes(const ethd_scene *scene, const ethd__probe *p) {
 
 /* ---- inside or outside ---- */
 
-/* Returns the bits of the boxes whose contents the ray from x to the right may meet. */
+/* Returns the bits of the boxes that the ray from x to the right may meet. */
 static unsigned ahead(const ethd__node *n, float x, float y) {
   unsigned meet = 0;
   for (int i = 0; i < ETHD__WIDE; i += 4) {
@@ -23,7 +23,7 @@ static unsigned ahead(const ethd__node *n, float x, float y) {
 }
 
 /* Returns true if x is inside, by the parity of the edges that a ray to the right crosses. Far outside the frame, where
-   boxes would be wrong by more than they are inflated, nothing is inside. */
+   the boxes' errors would exceed their inflation, no point is inside. */
 static bool contains(const ethd__strip *s, const ethd__chain *c) {
   const ethd__tree *tree = ethd__tree_at(s->scene, s->object);
   const ethd__probe *p = s->probe;
@@ -47,12 +47,13 @@ static bool contains(const ethd__strip *s, const ethd__chain *c) {
   return inside;
 }
 
-/* Squared distances of the nearest edge that may show x its outer face, and of the one that may show its inner one. */
+/* Squared distances of the nearest edge whose outer face may be towards x, and of the nearest whose inner face may
+   be. */
 typedef struct faces {
   double outer, inner;
 } faces;
 
-/* Lets the nearest face decide. If a face of the other kind is as near but for rounding, edges are counted instead. */
+/* The nearest face decides. If a face of the other kind is equally near within rounding, edges are counted instead. */
 static bool is_inside(const ethd__strip *s, const ethd__chain *c, const faces *f) {
   double outer = sqrt(f->outer), inner = sqrt(f->inner);
   double rounding = 4 * c->slack + 64 * DBL_EPSILON * fmin(outer, inner);
@@ -74,8 +75,8 @@ ETHD__INLINE void take(const ethd__chain *c, uint32_t k, ethd_vec x, faces *f, e
   if (!(in < -s.doubt) && s.squared < f->inner) f->inner = s.squared;
 }
 
-/* Visits the likely edge first, or the one that is found by always taking the nearest box; its distance bounds the
-   rest. Two copies of it are compiled, with faces and without. */
+/* Visits the likely edge first, or the edge found through the nearest boxes; its distance bounds the rest. It is
+   compiled twice, with faces and without. */
 ETHD__INLINE void visit(const ethd__strip *s, const ethd__chain *c, uint32_t first, faces *f, ethd__nearest_edge *out) {
   const ethd__probe *p = s->probe;
   ethd__walk walk;

@@ -4,7 +4,7 @@
 
 #include "scene/tree.h"
 
-/* A chain with a tree, and the point x from which it is asked. */
+/* A chain with a tree, and the query's point x. */
 typedef struct ethd__strip {
   const ethd_scene *scene;
   const ethd__object *object;
@@ -12,23 +12,23 @@ typedef struct ethd__strip {
   ethd_vec x;
 } ethd__strip;
 
-/* The edge nearest to x, the first if several are as near; ETHD__NONE: none is within the limit. */
+/* The edge nearest to x, the first if several are equally near; ETHD__NONE: none is within the limit. */
 typedef struct ethd__nearest_edge {
   double squared; /* of the distance, m2 */
   uint32_t edge;
-  bool inside; /* x is inside the polygon, if that was asked */
+  bool inside; /* x is inside the polygon; only if requested */
 } ethd__nearest_edge;
 
 /* Finds the nearest among the edges nearer than the root of `limit` (m2). `first`: an edge that is likely to be near;
    ETHD__NONE: none is known. */
 void ethd__strip_nearest(const ethd__strip *strip, uint32_t first, double limit, ethd__nearest_edge *out) ETHD_RT;
 
-/* Finds the nearest edge of a polygon, however far, and whether x is inside. */
+/* Finds the nearest edge of a polygon, at any distance, and whether x is inside. */
 void ethd__strip_signed(const ethd__strip *strip, uint32_t first, ethd__nearest_edge *out) ETHD_RT;
 
-/* The local minima of the distance from x to the chain, in no order: those whose points lie within `bound` of a
-   centre. A box is left out when all of its edges lean one way as seen from x: along them the distance only rises or
-   only falls, so none of them, nor a vertex between them, is a local minimum (Johnson and Cohen 2001). */
+/* The local minima of the distance from x to the chain whose points lie within `bound` of a centre, in no order. A box
+   is left out if the distance from x only rises or only falls along all of its edges: then no edge of it, and no vertex
+   between them, is a local minimum (Johnson and Cohen 2001). */
 typedef struct ethd__minima {
   ethd__chain chain;
   const ethd__tree *tree;
@@ -36,7 +36,7 @@ typedef struct ethd__minima {
   ethd_vec x;
   float bound; /* see ethd__bound; may shrink between two calls of ethd__minima_next */
   const float *slopes;
-  bool apart; /* x and the centre aren't one point */
+  bool apart; /* x and the centre differ */
   bool end;   /* the end of an open chain is still to come */
   int count;
   struct {

@@ -2,8 +2,8 @@
 
 #include <float.h>
 
-/* Returns the bits of the boxes near the centre that may hold a minimum as seen from x. The two are one point unless
-   they are `apart`. */
+/* Returns the bits of the boxes near the centre that may hold a minimum of the distance from x. Centre and x are one
+   point unless they are `apart`. */
 static unsigned open_lanes(const ethd__minima *m, uint32_t place) {
   const ethd__node *n = m->at_x.nodes + place;
   const float *slopes = m->slopes ? m->slopes + ETHD__WIDE * (size_t)place : NULL;
@@ -20,8 +20,8 @@ static void open_node(ethd__minima *m, uint32_t level, uint32_t index) {
   }
 }
 
-/* Starts with the root or, if it has two children, with both of them: asking the root which to open takes as long as
-   opening them. */
+/* Starts with the root or, if it has two children, with both of them: choosing between them takes as long as opening
+   both. */
 static void push_top(ethd__minima *m) {
   uint32_t level = m->tree->levels, roots = 1;
   if (level > 1 && m->tree->first[level] - m->tree->first[level - 1] == 2) level--, roots = 2;

@@ -38,7 +38,7 @@ static bool precedes(const sweep *s, uint32_t a, uint32_t b) {
 static uint32_t next(const sweep *s, uint32_t k) { return k + 1 < s->n ? k + 1 : 0; }
 static uint32_t previous(const sweep *s, uint32_t k) { return k ? k - 1 : s->n - 1; }
 
-/* Edge k runs from point k to the next; the sweep meets its start first. */
+/* Edge k connects point k and the next; the sweep meets its start first. */
 static uint32_t start_of(const sweep *s, uint32_t k) { return precedes(s, k, next(s, k)) ? k : next(s, k); }
 static uint32_t end_of(const sweep *s, uint32_t k) { return precedes(s, k, next(s, k)) ? next(s, k) : k; }
 
@@ -79,7 +79,7 @@ static bool fold(const sweep *s, uint32_t e, uint32_t f) {
   return orient(s, p, previous(s, p), next(s, p)) == 0;
 }
 
-/* Neighbours on one line overlap: where they didn't, the line wouldn't cross both. */
+/* Neighbours on one line overlap: otherwise the sweep line wouldn't cross both. */
 static bool cross(const sweep *s, uint32_t e, uint32_t f) {
   uint32_t a = start_of(s, e), b = end_of(s, e), c = start_of(s, f), d = end_of(s, f);
   int oc = orient(s, a, b, c), od = orient(s, a, b, d);
@@ -168,7 +168,7 @@ static void replace(sweep *s, uint32_t e, uint32_t f) {
   link_beside(s, f, t[f].beside[1]);
 }
 
-/* ---- the points, one after the other ---- */
+/* ---- the sweep over the points ---- */
 
 static bool both_start(sweep *s, uint32_t v) {
   uint32_t e = previous(s, v), f = v, at = s->root, beside[2] = {NONE, NONE};

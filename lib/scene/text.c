@@ -11,8 +11,8 @@ typedef struct text_word {
 } text_word;
 
 typedef struct text_reader {
-  const char *at, *end; /* what is left of the text */
-  text_word line;       /* what is left of the line */
+  const char *at, *end; /* the rest of the text */
+  text_word line;       /* the rest of the line */
   int number;           /* of the line, from 1 */
   ethd_error *error;
 } text_reader;
@@ -23,7 +23,7 @@ struct ethd__text {
   ethd_material materials[ETHD_MATERIALS_MAX];
   double *numbers;
   size_t material_count, number_count;
-  size_t lines, words; /* of objects: there are no more objects and numbers than these */
+  size_t lines, words; /* of objects: bounds on the numbers of objects and of numbers */
 };
 
 static ethd_status refuse(text_reader *r, ethd_status status, text_word w, ethd__found found) {
@@ -88,7 +88,7 @@ static size_t digits(const char *at, const char *end, char *out) {
   return n;
 }
 
-/* Reads [+-] digits after an 'e'. One that is far too large stops growing, but stays far too large. */
+/* Reads [+-] digits after an 'e'. A far too large exponent stops growing, and stays far too large. */
 static bool read_exponent(const char **at, const char *end, long *out) {
   bool minus = *at < end && **at == '-';
   if (*at < end && (**at == '+' || **at == '-')) ++*at;
@@ -182,14 +182,14 @@ static ethd_status read_material(text_reader *r, ethd__text *t, text_word keywor
 
 /* ---- objects ---- */
 
-/* Returns the number of the shape that is called so in a world; the count: none is. */
+/* Returns the number of the shape of this name in a world; the world's count if there is none. */
 static size_t find_shape(const ethd__world *world, text_word w) {
   size_t i = 0;
   while (i < world->count && !is(w, world->form(i)->name)) i++;
   return i;
 }
 
-/* A shape of the other world is named as such: "circle, a shape of the plane". */
+/* The message names a shape of the other world: "circle, a shape of the plane". */
 static ethd_status refuse_shape(ethd__text *t, text_word w) {
   const ethd__world *other = t->world == &ethd__plane ? &ethd__space : &ethd__plane;
   char name[64];

@@ -1,6 +1,6 @@
-/* Reading the text of a world, of the plane or of space: an object or a material on each line. The text is read twice:
-   opening it counts lines and takes the materials, so that an object may name one that is defined below it; then come
-   the objects, one by one. [main] */
+/* Reads the text of a world, of the plane or of space: an object or a material on each line. The text is read twice:
+   opening it counts lines and reads the materials, so that an object may name a material that is defined below it; then
+   the objects are read one by one. [main] */
 #ifndef ETHD__SCENE_TEXT_H
 #define ETHD__SCENE_TEXT_H
 
@@ -11,7 +11,7 @@ typedef struct ethd__text ethd__text;
 typedef struct ethd__written {
   size_t shape; /* in its world */
   int32_t material, line;
-  const double *numbers; /* as many as the form may have, of any value; they live until the text is closed */
+  const double *numbers; /* a count that the form allows, of any value; they live until the text is closed */
   size_t count;
 } ethd__written;
 

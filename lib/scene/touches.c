@@ -107,9 +107,9 @@ size_t ethd_scene_touches(const ethd_scene *scene, ethd_vec x, double range, eth
   return l.count;
 }
 
-/* ---- one touch again ---- */
+/* ---- the continuation of a touch ---- */
 
-/* Keeps the touch nearest to `from`; of several that are as near, the first along the chain. */
+/* Keeps the touch nearest to `from`; of several equally near ones, the first along the chain. */
 static void take(const ethd_touch *touch, ethd_vec from, double *least, ethd_touch *out) {
   ethd_vec u = ethd_vec_sub(touch->point, from);
   double d = ethd_vec_dot(u, u);

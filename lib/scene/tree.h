@@ -1,23 +1,23 @@
-/* The trees that a query walks: boxes around everything in a scene, eight to a node, each turned to fit what it holds.
+/* The trees of a query: boxes around everything in a scene, eight to a node, each rotated to fit its contents.
 
-   The idea: a box is never farther from x than what is in it. Once something has been found at some distance, every box
-   that is farther can be left out with all that it holds. So a walk goes down into the nearest box first, and what it
-   finds there bounds what else it looks into.
+   The idea: a box is never farther from x than its contents. Once an object has been found at some distance, every box
+   that is farther can be left out with its contents. So a walk goes down into the nearest box first, and the distance
+   found there bounds the rest of the search.
 
-     level 0   leaves: objects or, in the tree that each chain of more than four edges has of its own, its edges
-     level l   nodes, each with the boxes of eight things of the level below: node i has those from 8 i on
+     level 0   leaves: objects or, in the own tree of each chain of more than four edges, its edges
+     level l   nodes, each with the boxes of eight items of the level below: node i has those from 8 i on
 
    Edges keep their chain's order; objects are ordered so that neighbours are near each other (order_build.c). Every
-   node is full but for the last of its level, so indices take the place of pointers: above leaf k, on level l, is node
-   k >> 3 l, and the box in it that holds the leaf is in lane (k >> 3 (l - 1)) % 8.
+   node is full except the last of its level, so indices replace pointers: the ancestor of leaf k on level l is node k
+   >> 3 l, and the box in it that holds the leaf is in lane (k >> 3 (l - 1)) % 8.
 
-   Boxes are floats in the trees' frame, in which all bounded objects lie within [-1, 1]. They are drawn larger than
-   what they hold, by more than the error of floats there:
+   Boxes are floats in the trees' frame, in which all bounded objects lie within [-1, 1]. They are larger than their
+   contents, by more than the rounding errors of floats:
 
      17 2^-24   X is rounded, c X + s Y, - u, - w: each rounding at most 2^-24 of its result, |X|, |Y| <= 2
      2^-22      of the distance: (c, s) isn't exactly of unit length, squares and their sum are rounded
-     2^-18      of the distance: all of that, when X is farther away
-   ETHD__INFLATE is more than the first of these; bounds are stretched by more than the others. */
+     2^-18      of the distance: all of these errors, if X is farther away
+   ETHD__INFLATE exceeds the first error; bounds are stretched by more than the others. */
 #ifndef ETHD__SCENE_TREE_H
 #define ETHD__SCENE_TREE_H
 
@@ -25,7 +25,7 @@
 #include "scene/scene.h"
 
 #define ETHD__WIDE 8
-#define ETHD__FLAT 4 /* the most edges of a chain without a tree: they are looked at one by one */
+#define ETHD__FLAT 4 /* the most edges of a chain without a tree: they are tested one by one */
 #define ETHD__INFLATE 0x1.8p-20f
 #define ETHD__STRETCH_NEAR (1 + 0x1p-20)
 #define ETHD__STRETCH_FAR (1 + 0x1p-16)
@@ -72,10 +72,10 @@ typedef struct ethd__probe {
 /* Returns v, clamped to [-most, most]. */
 static inline double ethd__within(double v, double most) { return v > most ? most : v < -most ? -most : v; }
 
-#define ETHD__FAR 0x1p50 /* a float too, so that a coordinate there is recognised */
+#define ETHD__FAR 0x1p50 /* exact as a float, so that a clamped coordinate is recognised */
 
-/* Makes the probe of x. Beyond ETHD__FAR the nearest point of that square takes the place of x: no box is farther from
-   it than from x. */
+/* Makes the probe of x. Beyond ETHD__FAR the nearest point of that square replaces x: no box is farther from it than
+   from x. */
 static inline ethd__probe ethd__probe_at(const ethd_scene *scene, ethd_vec x) {
   double s = scene->scale, u = s * (x.x - scene->centre.x), v = s * (x.y - scene->centre.y);
   bool near = fabs(u) <= 2 && fabs(v) <= 2;
@@ -84,12 +84,12 @@ static inline ethd__probe ethd__probe_at(const ethd_scene *scene, ethd_vec x) {
   return p;
 }
 
-/* Returns false if another point takes the place of x. */
+/* Returns false if another point replaces x. */
 static inline bool ethd__is_true_to(const ethd__probe *p) {
   return fabs((double)p->x) < ETHD__FAR && fabs((double)p->y) < ETHD__FAR;
 }
 
-/* Turns a squared distance, m2, into a bound that boxes may be compared with. */
+/* Converts a squared distance, m2, into a bound for comparisons with boxes. */
 static inline float ethd__bound(const ethd__probe *p, double squared) {
   double b = squared * p->squares;
   return (float)(b < 1e37 ? b : 1e37);
@@ -100,9 +100,9 @@ static inline float ethd__bound(const ethd__probe *p, double squared) {
 /* Returns the squared distances of four lanes from `i` on.
 
    `slopes` (NULL: not used) holds for each box of a chain the steepest slope of its edges against the box's axis. If x
-   lies so far beyond the box's end that no edge is steep enough to make up for it, the distance falls along all of them
-   towards that end. Then neither an edge nor a vertex between two edges of the box holds a minimum, and the lane's
-   distance becomes inf (Johnson and Cohen 2001). */
+   lies far enough beyond the box's end, the distance falls along all of its edges towards that end, whatever their
+   slopes. Then neither an edge nor a vertex between two edges of the box is a minimum, and the lane's distance becomes
+   inf (Johnson and Cohen 2001). */
 ETHD__INLINE ethd__floats ethd__four_squared(const ethd__node *n, const float *slopes, int i, ethd__floats x,
                                              ethd__floats y) {
   ethd__floats c = ethd__load(n->c + i), s = ethd__load(n->s + i), zero = ethd__all(0);
@@ -140,7 +140,7 @@ ETHD__INLINE unsigned ethd__lanes_within(const float squared[ETHD__WIDE], float 
   return ethd__bits(ethd__load(squared) <= most) | ethd__bits(ethd__load(squared + 4) <= most) << 4;
 }
 
-/* Returns the nearest lane, the first if several are as near. */
+/* Returns the nearest lane, the first if several are equally near. */
 ETHD__INLINE uint32_t ethd__nearest_lane(const float squared[ETHD__WIDE]) {
   ethd__floats low = ethd__load(squared), high = ethd__load(squared + 4), m = ethd__least(ethd__min(low, high));
   unsigned lanes = ethd__bits(low == m) | ethd__bits(high == m) << 4;
@@ -159,25 +159,25 @@ typedef struct ethd__eight {
   _Alignas(16) float squared[ETHD__WIDE];
 } ethd__eight;
 
-/* Boxes that are still to be opened wait on a stack, the nearest box of each node on top. The leaves of one node of
-   level 1, the current node, wait beside the stack as bits, since most walks never need the stack.
+/* Unopened boxes are on a stack, the nearest box of each node on top. The leaves of one node of level 1, the current
+   node, are kept as bits instead, since most walks never need the stack.
 
-   The caller looks at one leaf itself, which gives a bound. It gets there in one of two ways:
+   The caller examines one leaf itself, which gives a bound. It finds this leaf by one of two methods:
 
      walk_around   The caller knows a leaf, perhaps from the last query. The nodes above it follow from its index, so
                    all levels can be read at once; on each, the boxes beside the path to the leaf are kept.
-     walk_down     The caller knows none. On each level the nearest box is taken, and its node's eight distances are
-                   noted.
-     walk_on       When the leaf found there has given a bound, the boxes beside that path are kept.
+     walk_down     The caller knows none. On each level the nearest box is chosen, and its node's eight distances are
+                   stored.
+     walk_on       After the leaf found there has given a bound, the boxes beside that path are kept.
 
-   After that, walk_next gives one leaf after the other, none twice. */
+   After that, walk_next gives the other leaves one by one. */
 typedef struct ethd__walk {
   const ethd__tree *tree;
   const ethd__probe *probe;
   const float *slopes;
   float bound;                  /* of squared distances; may be lowered between two leaves */
   int count;                    /* of the stack */
-  unsigned lanes;               /* bits of the leaves of the current node that are still to come */
+  unsigned lanes;               /* bits of the current node's leaves that walk_next hasn't given yet */
   uint32_t leaf;                /* the first leaf of that node */
   ethd__eight at[ETHD__LEVELS]; /* distances: [1] of the current node; after walk_down, of a node on each level */
   ethd__scene_place stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1];
@@ -189,7 +189,7 @@ ETHD__INLINE void ethd__look(ethd__walk *w, uint32_t level, uint32_t index, floa
   ethd__eight_squared(w->probe->nodes + n, w->slopes ? w->slopes + ETHD__WIDE * (size_t)n : NULL, w->probe, squared);
 }
 
-/* Puts these lanes of a node on the stack, nearer ones on top. */
+/* Pushes these lanes of a node on the stack, nearer ones on top. */
 static inline void ethd__push(ethd__walk *w, const float squared[ETHD__WIDE], unsigned lanes, uint32_t level,
                               uint32_t index) {
   int start = w->count;
@@ -230,7 +230,7 @@ static inline void ethd__walk_around(ethd__walk *w, uint32_t taken, float bound)
   }
 }
 
-/* Returns the leaf to which the nearest box of each level leads. The tree isn't empty. */
+/* Returns the leaf on the path of the nearest boxes. The tree isn't empty. */
 static inline uint32_t ethd__walk_down(ethd__walk *w) {
   uint32_t index = 0;
   for (uint32_t level = w->tree->levels; level > 0; level--) {
@@ -277,10 +277,10 @@ static inline ethd__scene_place ethd__walk_next(ethd__walk *w) {
 
 /* ---- one edge ---- */
 
-/* Where x lies beside an edge e that starts at a, u = x - a; found without a branch. */
+/* The position of x beside an edge e that starts at a, u = x - a; computed without a branch. */
 typedef struct ethd__beside {
   double squared;       /* of the distance, m2 */
-  double across, doubt; /* e x u, and the most that it may be wrong by */
+  double across, doubt; /* e x u, and the bound on its error */
 } ethd__beside;
 
 static inline ethd__beside ethd__beside_edge(ethd_vec a, ethd_vec b, ethd_vec x) {

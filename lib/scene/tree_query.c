@@ -1,10 +1,10 @@
 /* The nearest object. A walk over the scene's tree gives objects, those in the nearest boxes first, and each one that
-   is nearer lowers the walk's bound. A hint says where the last query found its answer: the walk then starts there and
-   mostly has nothing left to open, and it gives the same answer as without the hint. */
+   is nearer lowers the walk's bound. A hint gives the place of the last query's result: the walk then starts there and
+   mostly needs to open no other box; the result is the same as without the hint. */
 #include "scene/strip.h"
 
 typedef struct search {
-  ethd__strip at; /* scene, x and the object at hand */
+  ethd__strip at; /* scene, x and the present object */
   ethd__probe probe;
   double squared;       /* of the distance of the nearest so far; 0 where x is inside it */
   double distance;      /* of the nearest so far; INFINITY while there is none */
@@ -12,12 +12,12 @@ typedef struct search {
   ethd_touch touch;     /* of the nearest so far, unless it is a thin wall */
 } search;
 
-/* Returns true if an object at the same distance comes first: the one with the lowest number is the answer. */
+/* Returns true if an object at the same distance comes first: the result is the one with the lowest number. */
 static bool goes_first(const search *q, uint32_t place) {
   return q->place == ETHD__NONE || ethd__object_at(q->at.scene, place)->id < ethd__object_at(q->at.scene, q->place)->id;
 }
 
-/* Keeps a thin wall if it is nearer. Its touch is worked out at the end, when it is clear that it is the nearest. */
+/* Keeps a thin wall if it is nearer. Its touch is computed only at the end, if it is the nearest. */
 static void take_thin(search *q, uint32_t place, uint32_t edge, double squared) {
   if (q->distance < 0 || !(squared < q->squared || (squared == q->squared && goes_first(q, place)))) return;
   q->squared = squared;
@@ -84,7 +84,7 @@ static uint32_t guess_edge(const search *q, uint32_t leaf, const ethd_scene_hint
   return guess < edges ? guess : hint->edge;
 }
 
-/* Leaf numbers in a hint start at 1, so that zeros are no hint. */
+/* Leaf numbers in a hint start at 1: 0 means no hint. */
 static void renew(const search *q, ethd_scene_hint *hint) {
   bool same = hint->leaf == q->place + 1;
   *hint = (ethd_scene_hint){q->place + 1, q->edge, same ? (int32_t)(q->edge - hint->edge) : 0};

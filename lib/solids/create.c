@@ -5,7 +5,7 @@
 #include "scene/text.h"
 #include "solids/solids.h"
 
-#define SLACK 1e-14 /* of a coordinate: more than rounding changes a distance by */
+#define SLACK 1e-14 /* of a coordinate: bound on the rounding error of a distance */
 
 /* ---- reading ---- */
 
@@ -21,7 +21,7 @@ static ethd_status read_objects(ethd__text *t, ethd__written *objects, size_t *c
   ethd_status status;
   while ((status = ethd__text_next(t, &objects[*count])) == ETHD_OK) ++*count;
   if (status != ETHD_STATUS_EMPTY) return status;
-  if (*count > INT32_MAX) /* unreachable: in a test, for it takes 17 GB of text */
+  if (*count > INT32_MAX) /* unreachable: in a test, since it needs 17 GB of text */
     return ethd__refuse(error, ETHD_E_FULL, "objects", (ethd__found){(double)*count, 0, INT32_MAX});
   for (size_t i = 0; i < *count; i++)
     if ((status = check(&objects[i], error)) != ETHD_OK) return status;
@@ -72,7 +72,7 @@ static size_t reserve(size_t *bytes, size_t size) {
   return at;
 }
 
-/* Makes solids of checked objects; NULL: there is no memory. */
+/* Makes solids of checked objects; NULL: no memory. */
 static ethd_solids *build(const ethd__written *objects, size_t count, const ethd_material *materials,
                           size_t material_count) {
   size_t bytes = 0, numbers = 0, bounded = 0;

@@ -1,5 +1,5 @@
-/* The rows of all solids, and their closed forms. Nothing here needs the system, so the file may be on both threads'
-   sides. */
+/* The rows of all solids, and their closed forms. No function here needs the system, so both [main] and [rt] may use
+   them. */
 #include <float.h>
 
 #include "solids/solids.h"
@@ -26,7 +26,7 @@ static ethd_status check_normal(const double *p, ethd_error *error) {
 static void keep_unit(const double *given, size_t count, double *kept) {
   double length = ethd_vec3_norm(ethd_vec3_of(given));
   copy(given, count, kept);
-  if (fabs(length - 1) <= 4 * DBL_EPSILON) return; /* as in the plane: a normal that was divided before stays */
+  if (fabs(length - 1) <= 4 * DBL_EPSILON) return; /* as in the plane: an already normalised normal stays */
   for (size_t k = 0; k < count; k++) kept[k] /= length;
 }
 
@@ -38,7 +38,7 @@ static void halfspace(const double *p, ethd_vec3 x, ethd__foot *out) ETHD_RT {
 
 /* ---- sphere {x, y, z, r} ---- */
 
-/* Finds the nearest point of the ball about c. At its centre, where every direction is as good, n is `any`. */
+/* Finds the nearest point of the ball about c. At its centre, where n is undefined, n is `any`. */
 static void ball(ethd_vec3 c, double r, ethd_vec3 any, ethd_vec3 x, ethd__foot *out) {
   ethd_vec3 gap = ethd_vec3_sub(c, x);
   double distance = ethd_vec3_norm(gap);
@@ -71,7 +71,7 @@ static ethd_vec3 across(ethd_vec3 u) {
   return ethd_vec3_scale(1 / ethd_vec3_norm(w), w);
 }
 
-/* Beside the axis the distance from it is a cross product's, which loses no digits near the axis. */
+/* The distance from the axis is the length of a cross product, which is accurate near the axis. */
 static void capsule(const double *p, ethd_vec3 x, ethd__foot *out) ETHD_RT {
   ethd_vec3 a = ethd_vec3_of(p), u = ethd_vec3_of(p + 7), r = ethd_vec3_sub(x, a), w = ethd_vec3_cross(u, r);
   double along = ethd_vec3_dot(u, r), off = ethd_vec3_norm(w);

@@ -1,4 +1,4 @@
-/* Solids in memory: one block, which holds what the pointers lead to. Those with bounds come first, half-spaces last. */
+/* Solids in memory: one block, which all pointers point into. Those with bounds come first, half-spaces last. */
 #ifndef ETHD__SOLIDS_SOLIDS_H
 #define ETHD__SOLIDS_SOLIDS_H
 
@@ -16,10 +16,10 @@ typedef struct ethd__foot {
   ethd_vec3 point, n;
 } ethd__foot;
 
-/* What is known of a shape: one row of a table. */
+/* The properties of a shape: one row of a table. */
 typedef struct ethd__solid_shape {
   ethd__form form;
-  size_t kept; /* numbers that solids keep of one */
+  size_t kept; /* kept numbers of one solid */
 
   /* Checks what the range of one number can't express; NULL: there is nothing to check. The error has no line. [main] */
   ethd_status (*check)(const double *given, ethd_error *error);

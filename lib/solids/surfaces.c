@@ -1,9 +1,9 @@
-/* The surfaces near a point. Bounds are asked first: all solids' together, then each one's. */
+/* The surfaces near a point. Bounds are tested first: those of all solids together, then each solid's. */
 #include "solids/solids.h"
 
 #define FAR 1e100 /* m, m/s, rad/s: no square or product of these overflows */
 
-/* NaN is refused, and raises no trap. */
+/* Refuses NaN, without a trap. */
 static bool is_within_far(ethd_vec3 v) {
   return islessequal(fabs(v.x), FAR) && islessequal(fabs(v.y), FAR) && islessequal(fabs(v.z), FAR);
 }
@@ -46,7 +46,7 @@ static ethd_vec3 turned(const body_frame *f, ethd_vec3 v) {
                        ethd_vec3_add(ethd_vec3_scale(v.y, f->axes[1]), ethd_vec3_scale(v.z, f->axes[2])));
 }
 
-/* Writes a surface of the body as it is in R_0. */
+/* Writes a surface of the body, in R_0. */
 static void put(const body_frame *f, const ethd__solid *solid, const ethd__foot *foot, ethd_surface *out) {
   *out = (ethd_surface){foot->point, foot->n, {0, 0, 0}, solid->id, solid->material};
   if (!f->pose) return;

@@ -1,4 +1,4 @@
-/* The finger in space: given as it is, or filtered from a tracker's readings; how old and how plausible they are. */
+/* The finger in space: given directly, or filtered from a tracker's readings; the readings' age and plausibility. */
 #include "core/finger.h"
 #include "core/rows.h"
 #include "space/state.h"
@@ -9,7 +9,7 @@ static bool is_possible(const double v[3], double most) {
   return fabs(v[0]) <= most && fabs(v[1]) <= most && fabs(v[2]) <= most;
 }
 
-/* Takes this tick's reading; returns whether it was used. While the filter acquires the finger, readings that it gates
+/* Processes this tick's reading; returns whether it was used. While the filter acquires the finger, gated readings
    don't count as implausible. */
 static bool use(ethd__space_tick *t) {
   const ethd_space_sense *s = t->sense;
@@ -38,7 +38,7 @@ static bool use(ethd__space_tick *t) {
 static void find(ethd__space_tick *t) {
   const ethd_space_setup *setup = &t->plan->setup;
   ethd__space_state *state = t->state;
-  t->core.finger = t->core.x; /* a finger that was never seen: there is nothing to follow */
+  t->core.finger = t->core.x; /* a finger that was never seen: the effector follows nothing */
   t->core.finger_v = t->core.v;
   if (t->sense->have & ETHD_SPACE_HAVE_FINGER) {
     t->core.finger = ethd_vec3_of(t->sense->finger);
@@ -55,7 +55,7 @@ static void find(ethd__space_tick *t) {
   if (state->filter.started) ethd_filter_output3(&t->plan->filter, &state->filter, &t->core.finger, &t->core.finger_v);
 }
 
-/* Notes a finger that has come out of a cap over its rim. */
+/* Notes a finger that has left a cap over its rim. */
 static void watch_rim(ethd__space_tick *t) {
   if (!(t->sense->have & ETHD_SPACE_HAVE_NORMAL)) return;
   const double out = ethd_vec3_dot(ethd_vec3_of(t->sense->normal), ethd_vec3_sub(t->core.x, t->core.finger));

@@ -1,36 +1,36 @@
-/* From what the laws ask for to the command.
+/* Makes the command from the laws' request.
 
-     velocity   asked -> fades -> bounds of contacts and workspace -> speed -> acceleration, along n first
-     force      asked -> force -> fades -> rate, and force again
+     velocity   request -> fades -> bounds of contacts and workspace -> speed -> acceleration, along n first
+     force      request -> force -> fades -> rate, and force again
 
-   The contacts' bounds come after the fades, so a fade can't drive the effector into a wall. The workspace's bounds come
-   after the contacts', so a wall that moves can't push the effector out. A velocity command stops with the acceleration;
-   a force command stops by the guard's law (ethd/guard.h), with the mass of the ability. */
+   The contacts' bounds come after the fades, so a fade can't drive the effector into a wall. The workspace's bounds
+   come after the contacts', so a wall that moves can't push the effector out. A velocity command stops with the
+   acceleration; a force command stops by the guard's law (ethd/guard.h), with the mass of the ability. */
 #include "core/fade.h"
 #include "core/rows.h"
 #include "guard/parts.h"
 #include "space/state.h"
 
-#define FAST 1.05    /* times the speed limit at which a commanded effector is stopped */
-#define OUTSIDE 1e-9 /* m: more than rounding takes an effector over its workspace's bound */
-#define ROUNDED 1e-9 /* share by which rounding takes a command over the speed, at most */
+#define FAST 1.05    /* a commanded effector is stopped at this multiple of the speed limit */
+#define OUTSIDE 1e-9 /* m: bound on an effector's distance outside of its workspace by rounding */
+#define ROUNDED 1e-9 /* bound on the share by which a command exceeds the speed by rounding */
 #define BOUNDS (ETHD_CONTACTS_MAX + ETHD__FACES)
 
-/* Returns the time since the last command, s: also a tick without measurement gave one, zero. */
+/* Returns the time since the last command, s; a tick without measurement commands zero. */
 static double since_last(const ethd__space_tick *t) { return (double)t->periods * t->plan->setup.period; }
 
 /* ---- the workspace ---- */
 
-/* Returns the highest speed from which the command can stop within d, m: as in law/transition_approach.c, with a command
-   that is late by its period only. A command that is held for it then goes no farther than d. Half of the acceleration
-   counts, so that four faces can be braked for at once, in a corner of the box at the ball: 4 (a / 2)^2 = a^2. */
+/* Returns the highest speed from which the command can stop within d, m: as in law/transition_approach.c, with the
+   period as the only delay. A command held for a period then goes no farther than d. Half of the acceleration is used,
+   so that the effector can brake for four faces at once, in a corner of the box at the ball: 4 (a / 2)^2 = a^2. */
 static double highest(const ethd__space_tick *t, double d) {
   const double late = t->core.dt, a = t->plan->setup.acceleration / 2;
   return d > 0 ? 2 * d / (late + sqrt(late * late + 2 * d / a)) : 0;
 }
 
-/* Returns the same for the ball, of a command that isn't longer than asked for: a way of l aside takes the effector
-   l^2 / (2 reach) farther from the ball's centre. */
+/* Returns the same for the ball, for a command that isn't longer than requested: a tangential motion of l takes the
+   effector l^2 / (2 reach) farther from the ball's centre. */
 static double highest_in_ball(const ethd__space_tick *t, double d, ethd_vec3 asked) {
   const ethd_space_setup *s = &t->plan->setup;
   const double next = ethd_vec3_norm(t->state->last) + s->acceleration * since_last(t);
@@ -40,7 +40,7 @@ static double highest_in_ball(const ethd__space_tick *t, double d, ethd_vec3 ask
   return left > 0 ? highest(t, left) : left / t->core.dt;
 }
 
-/* Gives the distances to the workspace's faces, and their outward normals; returns how many there are. */
+/* Gives the distances to the workspace's faces, and their outward normals; returns the number of faces. */
 static int faces(const ethd__space_tick *t, ethd_vec3 x, double d[ETHD__FACES], ethd_vec3 n[ETHD__FACES]) {
   const ethd_space_setup *s = &t->plan->setup;
   int count = 0;
@@ -68,7 +68,7 @@ static int faces(const ethd__space_tick *t, ethd_vec3 x, double d[ETHD__FACES], 
   return count;
 }
 
-/* ---- what stops the effector ---- */
+/* ---- reasons to stop the effector ---- */
 
 static int32_t breach(const ethd__space_tick *t, const double *d, int count) {
   const double most = t->plan->setup.speed * (t->plan->core.by_velocity ? FAST : 1);
@@ -81,8 +81,9 @@ static int32_t breach(const ethd__space_tick *t, const double *d, int count) {
 
 /* ---- velocity ---- */
 
-/* Cuts u to a length by its part across the first `count` directions of `own`, which are perpendicular: the change along
-   them was needed. That part was within the length before and is only cut back to it, so u changes no more than before. */
+/* Cuts u to a length by reducing its part perpendicular to the first `count` directions of `own`, which are orthogonal:
+   the change along them was needed. That part was within the length before and is only cut back to it, so u changes no
+   more than before. */
 static ethd_vec3 cut_across(ethd_vec3 u, double most, const ethd_vec3 *own, int count) {
   ethd_vec3 along = {0, 0, 0};
   if (ethd_vec3_norm(u) <= most) return u;
@@ -100,8 +101,9 @@ typedef struct limits {
   int count, faces;
 } limits;
 
-/* Goes from the last command towards `to` by at most the acceleration, first along the normals of those bounds that are
-   `due` (bits), in their order. A last command over the speed, as after a post of a lower one, doesn't rise further. */
+/* Changes the last command towards `to` within the acceleration, first along the normals of those bounds that are `due`
+   (bits), in their order. A last command over the speed limit, as after a post of a lower limit, doesn't rise
+   further. */
 static ethd_vec3 go(const ethd__space_tick *t, ethd_vec3 to, const limits *l, unsigned due) {
   ethd_vec3 from = t->state->last, left = ethd_vec3_sub(to, from), own[3];
   double most = t->plan->setup.acceleration * since_last(t);
@@ -126,9 +128,9 @@ static ethd_vec3 go(const ethd__space_tick *t, ethd_vec3 to, const limits *l, un
 
 static bool satisfies(ethd_vec3 u, const struct ethd__bound *b) { return ethd_vec3_dot(b->n, u) <= b->speed; }
 
-/* Goes towards `to` as far as the acceleration allows, first along the normals of the bounds that the last command
-   doesn't satisfy. Between two velocities that satisfy a bound there is none that doesn't; but the way along other
-   normals leads aside, so a face that it would cross comes first, too. */
+/* Changes the command towards `to` as far as the acceleration allows, first along the normals of the bounds that the
+   last command violates. All velocities between two that satisfy a bound satisfy it too. But the change along other
+   normals leaves this line, so a bound that it would violate also comes first. */
 static ethd_vec3 towards(const ethd__space_tick *t, ethd_vec3 to, const limits *l) {
   unsigned due = 0, crossed;
   ethd_vec3 u;
@@ -143,7 +145,7 @@ static ethd_vec3 towards(const ethd__space_tick *t, ethd_vec3 to, const limits *
   return u;
 }
 
-/* Cuts a velocity to the limit of its speed, and keeps the inward part that it needs along the ball. */
+/* Cuts a velocity to the speed limit, and keeps the inward part that it needs along the ball. */
 static ethd_vec3 slower(const ethd__space_tick *t, ethd_vec3 u, const limits *l) {
   const double most = t->plan->setup.speed;
   const ethd_vec3 cut = ethd_vec3_scale(most / ethd_vec3_norm(u), u);
@@ -236,7 +238,7 @@ void ethd__space_limit(ethd__space_tick *t) {
   if (t->plan->core.latches) state->stopping |= bits;
   bits |= state->stopping & ETHD_GUARD_FAULT;
   t->trace->guard = bits;
-  if (t->core.soft && !by_velocity) state->last = (ethd_vec3){0, 0, 0}; /* what moves must slow down first */
+  if (t->core.soft && !by_velocity) state->last = (ethd_vec3){0, 0, 0}; /* a moving effector must slow down first */
   if (bits || state->stopping) {
     ethd__fade_end(&state->core.fade);
     state->last = by_velocity ? stop_velocity(t) : stop_force(t);
@@ -246,7 +248,7 @@ void ethd__space_limit(ethd__space_tick *t) {
     state->last = by_velocity ? limit_velocity(t, asked, d, n, count) : limit_force(t, asked);
   }
   const double sum = state->last.x + state->last.y + state->last.z;
-  if (!(sum - sum == 0)) { /* unreachable: what laws and sense give is finite and small; a sum may still overflow */
+  if (!(sum - sum == 0)) { /* unreachable: laws and sense give finite, small numbers; a sum may still overflow */
     state->last = (ethd_vec3){0, 0, 0};
     t->trace->guard |= ETHD_GUARD_FINITE;
   }

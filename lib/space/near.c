@@ -1,10 +1,10 @@
-/* The surfaces within range become candidates, the deepest first, and the core works out what they lead to. */
+/* The surfaces within range become candidates, the deepest first, and the core computes the contacts from them. */
 #include <float.h>
 
 #include "core/contacts.h"
 #include "space/state.h"
 
-/* Inserts surface i, whose distance along n is d, by depth; the shallowest goes when there is no room. */
+/* Inserts surface i, whose distance along n is d, by depth; if there is no room, the shallowest is dropped. */
 static int insert(int near[ETHD_NEAR_MAX], double depth[ETHD_NEAR_MAX], int count, int i, double d) {
   int at = count < ETHD_NEAR_MAX ? count : ETHD_NEAR_MAX - 1;
   for (; at > 0 && depth[at - 1] > d; at--) {
@@ -58,8 +58,8 @@ static void append(const ethd__space_tick *t, ethd__candidates *c, const ethd_su
                         .slot = -1};
 }
 
-/* Contacts that no surface of their id continues go on where one that faces the same way is nearest, within R_r: a mesh
-   that gives each triangle an id is one surface to the hand. */
+/* Contacts that no surface of their id continues go on at the nearest surface with the same normal within 15 deg,
+   within R_r: a mesh with an id for each triangle is one surface for the hand. */
 static void continue_by_place(const ethd__space_tick *t, unsigned open, ethd__candidates *c) {
   for (; open; open &= open - 1) {
     const int i = __builtin_ctz(open);
@@ -76,15 +76,15 @@ static void continue_by_place(const ethd__space_tick *t, unsigned open, ethd__ca
   }
 }
 
-/* ---- the normal that a plate faces ---- */
+/* ---- the plate's normal ---- */
 
-/* Turns a unit vector towards another one by at most `most` rad. */
+/* Rotates a unit vector towards another one by at most `most` rad. */
 static ethd_vec3 turned(ethd_vec3 from, ethd_vec3 to, double most) {
   if (from.x == to.x && from.y == to.y && from.z == to.z) return to; /* nearly always */
   ethd_vec3 side = ethd_vec3_sub(to, ethd_vec3_scale(ethd_vec3_dot(from, to), from));
   const double across = ethd_vec3_norm(side);
   if (ethd_atan2(across, ethd_vec3_dot(from, to)) <= most) return to;
-  if (across < 1e-9) { /* opposite: any way round is as short */
+  if (across < 1e-9) { /* opposite: all directions of rotation are equally short */
     side = fabs(from.x) < 0.6 ? (ethd_vec3){1, 0, 0} : (ethd_vec3){0, 1, 0};
     side = ethd_vec3_sub(side, ethd_vec3_scale(ethd_vec3_dot(from, side), from));
   }
@@ -101,7 +101,7 @@ static void face(ethd__space_tick *t, const ethd_surface *nearest) {
   ethd_vec3_put(*facing, t->trace->facing);
 }
 
-/* Gives the ability along the normal, in the facts that a law looks ahead by. */
+/* Gives the ability along the normal as facts for a law that looks ahead. */
 static void facts(const void *front, const ethd_contact *contact, ethd_facts *out) ETHD_RT {
   const ethd__space_tick *t = front;
   const ethd_ability *a = &t->ability;
@@ -112,7 +112,7 @@ static void facts(const void *front, const ethd_contact *contact, ethd_facts *ou
   out->applied = by_velocity ? (double)NAN : ethd_vec3_dot(contact->n, state->last);
   out->friction = a->friction;
   out->viscous = (double)NAN;
-  out->delay = by_velocity ? 0 : a->delay; /* the place that is commanded is never late */
+  out->delay = by_velocity ? 0 : a->delay; /* the commanded position is never late */
   out->lag = 0;
   out->ring_radius = t->plan->setup.radius;
   out->finger_radius = t->plan->setup.finger_radius;

@@ -1,4 +1,4 @@
-/* A plan of the front for space: a posted setup with all that [main] can work out from it. */
+/* A plan of the front for space: a posted setup with all values that [main] can compute from it. */
 #ifndef ETHD__SPACE_PLAN_H
 #define ETHD__SPACE_PLAN_H
 
@@ -20,7 +20,7 @@ typedef struct ethd__space_plan {
    (ETHD_E_SIZE). */
 ethd_status ethd__space_setup_made(const void *setup, ethd_error *error);
 
-/* Checks the setup and works out the plan; a failure leaves the plan undefined. [main] */
+/* Checks the setup and makes the plan; a failure leaves the plan undefined. [main] */
 ethd_status ethd__space_prepare(const ethd_space_setup *setup, ethd__space_plan *out, ethd_error *error);
 
 #endif

@@ -17,7 +17,7 @@ typedef struct ethd__space_state {
   int64_t implausible; /* readings in a row */
   /* command */
   ethd_vec3 last;   /* N or m/s */
-  ethd_vec3 facing; /* normal that the plate is told to face; zero: none yet */
+  ethd_vec3 facing; /* commanded normal of the plate; zero: none yet */
   double cut;       /* s for which the command has been cut without a break */
   ethd_guard_stop stop;
   int32_t stopping, stopped; /* as in ethd_guard_state */
@@ -27,22 +27,22 @@ struct ethd_space {
   ethd__space_plan plans[2];
   ethd__space_state state, scratch;
   ethd__mail mail;
-  double period; /* s; this and the next never change */
+  double period; /* s; period and kind never change */
   ethd_space_kind kind;
 };
 
-/* A tick in the making. */
+/* The context of one tick. */
 typedef struct ethd__space_tick {
-  const ethd__space_plan *plan; /* the one that rules */
-  const ethd__space_plan *from; /* the one that was replaced at this tick, NULL: none */
+  const ethd__space_plan *plan; /* the plan in force */
+  const ethd__space_plan *from; /* the plan replaced at this tick, NULL: none */
   ethd__space_state *state, *scratch;
   const ethd_space_sense *sense;
   const ethd_surface *surfaces;
   uint32_t count;
-  const double *old;    /* at a swap, what the old plan would have commanded; NULL: nothing to fade from */
+  const double *old;    /* at a swap, the old plan's command; NULL: no fade begins */
   int64_t periods;      /* since the last tick, missed ones included */
-  double range;         /* m from X within which surfaces are shown; before a tick works it out, the least */
-  ethd__core_tick core; /* soft, dt, X and the finger, and what the contacts lead to */
+  double range;         /* m from X within which the trace has surfaces; at first its least value */
+  ethd__core_tick core; /* soft, dt, X and the finger, and the results of the contacts */
   ethd_ability ability;
   ethd_space_trace *trace;
 } ethd__space_tick;
@@ -50,17 +50,17 @@ typedef struct ethd__space_tick {
 /* Runs a tick. */
 void ethd__space_tick_run(ethd__space_tick *t) ETHD_RT;
 
-/* Works out where the finger is: core.finger, finger_v. */
+/* Estimates the finger: core.finger, finger_v. */
 void ethd__space_finger(ethd__space_tick *t) ETHD_RT;
 
-/* Works out from X, finger and surfaces what is touched, and the normal to face. False: a law failed. */
+/* Computes contacts and the plate's normal from X, finger and surfaces. False: a law failed. */
 bool ethd__space_touch(ethd__space_tick *t) ETHD_RT;
 
-/* Limits what the laws ask for, trace->asked, to what is commanded, trace->command, and sets trace->guard. */
+/* Makes the command, trace->command, from the laws' request, trace->asked, and sets trace->guard. */
 void ethd__space_limit(ethd__space_tick *t) ETHD_RT;
 
-/* Gives the velocity nearest to `asked` that no bound forbids: n.v <= speed, and n.v = speed where held. Where bounds
-   contradict each other, those that come first count. */
+/* Gives the velocity nearest to `asked` that satisfies all bounds: n.v <= speed, and n.v = speed for held ones. If
+   bounds contradict each other, the first ones count. */
 ethd_vec3 ethd__space_within(ethd_vec3 asked, const struct ethd__bound *bounds, int count) ETHD_RT;
 
 #endif

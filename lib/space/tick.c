@@ -1,5 +1,5 @@
-/* One tick in space, in the order of control/tick.c: what is already wrong, the finger, the contacts, tracking, what the
-   laws ask for, the guard, and what the noted rows lead to. When the measurement is impossible the command is zero. */
+/* One tick in space, in the order of control/tick.c: present faults, the finger, the contacts, tracking, the laws'
+   request, the guard, and the reactions to the noted rows. If the measurement is impossible, the command is zero. */
 #include "core/clock.h"
 #include "core/rows.h"
 #include "core/swap.h"
@@ -10,7 +10,7 @@
 
 static int64_t at_most(int64_t periods) { return periods < GAP_MAX ? periods : GAP_MAX; }
 
-/* ---- what is already wrong ---- */
+/* ---- present faults ---- */
 
 /* Returns false for NaN too. */
 static bool within(const double v[3], double most) {
@@ -63,9 +63,9 @@ static bool note_what_is_wrong(ethd__space_tick *t) {
   return possible;
 }
 
-/* ---- what the laws ask for ---- */
+/* ---- the laws' request ---- */
 
-/* Gives X and its velocity: of a plate the point at which the finger is to be. */
+/* Gives X and its velocity; for a plate X is the desired position of the finger. */
 static void place(ethd__space_tick *t) {
   const ethd_space_sense *s = t->sense;
   t->core.x = ethd_vec3_of(s->x);
@@ -147,7 +147,7 @@ static void swap_state(const ethd__space_tick *t, const ethd__space_state *old) 
   ethd__core_swap(&from->core, &to->core, &t->state->core, old ? &old->core : NULL, 0);
 }
 
-/* Works out what the old plan would command, on a copy of the state, and goes on with the new one. */
+/* Computes the old plan's command on a copy of the state, and continues with the new plan. */
 static void swap(ethd__space_tick *t, double old[3]) {
   memcpy(t->scratch, t->state, sizeof *t->scratch);
   ethd__space_tick before = *t;
@@ -155,7 +155,7 @@ static void swap(ethd__space_tick *t, double old[3]) {
   before.state = t->scratch;
   const bool held = evaluate(&before);
   if (held) ethd__space_limit(&before);
-  t->range = before.range; /* the trace shows what either plan looks at */
+  t->range = before.range; /* the trace shows the surfaces of both plans */
   memcpy(old, t->trace->command, sizeof t->trace->command);
   swap_state(t, held ? t->scratch : NULL);
   if (!held) {
@@ -198,7 +198,7 @@ static void guard(ethd__space_tick *t, ethd__halt halt) {
     ethd__note_value(core, ETHD_FAULT_SPEED, ethd_vec3_norm(ethd_vec3_of(t->sense->v)));
 }
 
-/* A velocity command is cut and bounded at every approach, so that is no row. */
+/* A velocity command is cut and bounded at every approach, so this isn't noted. */
 static void judge(ethd__space_tick *t, ethd__halt halt) {
   ethd__core *core = &t->state->core;
   const int64_t common = t->plan->core.by_velocity ? ETHD_GUARD_TORQUE | ETHD_GUARD_RATE : 0;
@@ -230,7 +230,7 @@ void ethd__space_tick_run(ethd__space_tick *t) {
   if (measured)
     guard(t, halt);
   else
-    state->last = (ethd_vec3){0, 0, 0}; /* that is what was commanded */
+    state->last = (ethd_vec3){0, 0, 0}; /* zero was commanded */
   judge(t, halt);
   if (t->plan->core.range) memcpy(t->trace->learnt, state->core.memory, sizeof state->core.memory);
   t->trace->tick = (int64_t)state->core.counters.ticks++;

@@ -1,15 +1,15 @@
-/* The velocity nearest to one that is asked for, under bounds along normals: the projection onto the set
-   {u: n_i.u <= s_i}; held bounds are equations. In three dimensions at most three bounds act at once, so all
-   choices of up to three are tried, fewer first; the first that satisfies the others and pushes along none of its own
-   is the solution (Karush-Kuhn-Tucker; the projection onto a convex set is unique). Of n bounds there are at most
-   n + n (n - 1) / 2 + n (n - 1) (n - 2) / 6 choices, 575 of 15. */
+/* The velocity nearest to a requested one, under bounds along normals: the projection onto the set
+   {u: n_i.u <= s_i}; held bounds are equations. In three dimensions at most three bounds act at once, so all choices of
+   up to three are tried, smaller ones first. The solution is the first choice that satisfies the other bounds and has
+   no negative multiplier (Karush-Kuhn-Tucker; the projection onto a convex set is unique). For n bounds there are at
+   most n + n (n - 1) / 2 + n (n - 1) (n - 2) / 6 choices, 575 for 15. */
 #include "space/state.h"
 
 #define SLACK 1e-12 /* m/s, and the least pivot of a choice whose normals differ */
 
 /* Solves u = asked - sum l_i n_i with n_i.u = s_i for the chosen bounds, by elimination without pivots on the Gram
-   matrix, whose pivots are positive. Returns false if a normal depends on the others, or a bound that isn't held would
-   have to pull (l_i < 0). */
+   matrix, whose pivots are positive. Returns false if a normal depends on the others, or if the multiplier of a bound
+   that isn't held is negative (l_i < 0). */
 static bool meet(ethd_vec3 asked, const struct ethd__bound *const *chosen, int count, ethd_vec3 *out) {
   double g[3][3], l[3];
   for (int i = 0; i < count; i++) {
@@ -45,7 +45,7 @@ static bool satisfies_all(ethd_vec3 u, const struct ethd__bound *bounds, int cou
   return true;
 }
 
-/* Where no velocity satisfies all, each bound in its turn, the first ones last. */
+/* If no velocity satisfies all bounds, applies the bounds one by one, the first ones last. */
 static ethd_vec3 one_by_one(ethd_vec3 u, const struct ethd__bound *bounds, int count) {
   for (int i = count - 1; i >= 0; i--) {
     const double over = ethd_vec3_dot(bounds[i].n, u) - bounds[i].speed;

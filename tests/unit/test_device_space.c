@@ -120,7 +120,7 @@ TEST(test_refused) {
 }
 
 TEST(test_safe_states_have_words) {
-  static const char *const says[] = {"safe is zero torque: ", "safe is zero speed: ", "safe is the brakes: "};
+  static const char *const says[] = {"safe is zero torque: ", "safe is zero speed: ", "safe is closed brakes: "};
   for (int k = 0; k < 3; k++) {
     arm.safe_is = (ethd_safe_state)k;
     ck_assert_int_eq(try("tracker, arm", true), ETHD_OK);

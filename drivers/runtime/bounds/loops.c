@@ -113,7 +113,7 @@ int ethd__bounds_rows(const ethd__sampled_loop *l, ethd__bounds_row out[ETHD_LOO
   return n;
 }
 
-/* Asks for stability at the margin, which is quicker than searching for the ends of the rows. */
+/* Tests stability at the margin, which is faster than a search for the ends of the rows. */
 bool ethd__bounds_keeps(const ethd__sampled_loop *l, const ethd__bounds_margin *margin) {
   if (l->stiffness <= 0 && l->damping <= 0) return true;
   return ethd__sampled_stable_up_to(l, margin->gain, margin->gain) && ethd__sampled_stable_up_to(l, margin->gain, 1) &&

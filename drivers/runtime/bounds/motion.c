@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* The force is the last coordinate, which stays as it is. */
+/* The force is the last coordinate, which is constant. */
 enum { FORCE = ETHD_MOTION_STATE, SIZE };
 
 typedef double square[SIZE][SIZE];
@@ -45,7 +45,7 @@ static double norm(square a) {
   return most;
 }
 
-#define TERMS 16 /* of the exponential's series: the rest is below 1e-18 for a norm of a half */
+#define TERMS 16 /* of the exponential's series: the remainder is below 1e-18 for a norm of 1/2 */
 
 /* Computes the exponential of a by the series for a / 2^n, squared n times (Moler and Van Loan 2003, method 3). */
 static void exponential(square a, square out) {

@@ -1,4 +1,4 @@
-/* How the loop's mass moves while its force is constant: x' = A x + B f, solved exactly by the matrix's exponential.
+/* The motion of the loop's mass under a constant force: x' = A x + B f, solved exactly by the matrix exponential.
 
         force   motor's side      transmission     the rest
        ------> [ motor_mass ]--/\/\ spring /\/\--[ mass - motor_mass ]     lead: how far the rest is ahead of the

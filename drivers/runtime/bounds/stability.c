@@ -7,7 +7,7 @@
 #include "ethd/maths.h"
 
 /* One tick is a linear map of the motion's state, the speed's estimate, the filter's position, the last tick's force,
-   the delayed forces and the last positions. Its matrix is read off by applying it to unit vectors. */
+   the delayed forces and the last positions. Its matrix is found by applying it to unit vectors. */
 enum {
   X = ETHD_MOTION_X,
   V = ETHD_MOTION_V,
@@ -23,7 +23,7 @@ typedef double matrix[STATE_MAX][STATE_MAX];
 
 typedef struct model {
   const ethd__sampled_loop *loop;
-  int waiting, past, size;            /* number of forces that don't act yet; index of x_k-1; length of the state */
+  int waiting, past, size;            /* number of delayed forces; index of x_k-1; length of the state */
   int samples;                        /* number of past positions that are kept */
   double w[ETHD_VELOCITY_WINDOW_MAX]; /* v^ from x_k, x_k-1, ... */
   double keep;                        /* share of the last estimate (lowpass) */
@@ -59,7 +59,7 @@ static void use_kalman(model *m) {
 
 static void prepare(const ethd__sampled_loop *loop, model *m) {
   *m = (model){.loop = loop};
-  switch (loop->method) { /* without a default, so that the compiler names an estimator that isn't here */
+  switch (loop->method) { /* without a default, so that the compiler reports a missing estimator */
   case ETHD_VELOCITY_LOWPASS: use_difference(m, 1 - ethd_exp(-2 * M_PI * loop->p[0] * loop->period)); break;
   case ETHD_VELOCITY_LSQ:
   case ETHD_VELOCITY_FOAW: use_line(m, (int)loop->p[0]); break;
@@ -156,7 +156,7 @@ double ethd__sampled_radius(const ethd__sampled_loop *loop) {
   return exp(log_norm);
 }
 
-/* The newest position counts in the estimate by w[0], or by the Kalman filter's beta. */
+/* The newest position has the weight w[0] in the estimate, or the Kalman filter's beta. */
 double ethd__sampled_kick(const ethd__sampled_loop *loop, double count) {
   model m;
   prepare(loop, &m);

@@ -19,8 +19,8 @@ static double bisect(ethd__sampled_loop *loop, double *value, double stable, dou
 
 static double grid(int i) { return exp(i * log(10) / STEPS_PER_DECADE); }
 
-/* With a large mass everything is slow, and then hold and delay reduce the damping by K (T (n + 1/2) + late), whatever
-   the estimator is. */
+/* With a large mass all motion is slow, and then hold and delay reduce the damping by K (T (n + 1/2) + late), for any
+   estimator. */
 double ethd__sampled_damping_needed(const ethd__sampled_loop *l) {
   return l->stiffness * (l->period * (l->delay + 0.5) + l->late);
 }
@@ -46,8 +46,8 @@ static double band_end(ethd__sampled_loop *l, double *gain, double most) {
   return *gain;
 }
 
-/* The grid is in units that mass and period set. A stable band may be narrower than the grid, so the loop's own value
-   is tried too. */
+/* Mass and period set the units of the grid. A stable band may be narrower than the grid, so the loop's own value is
+   tried too. */
 static double gain_max(ethd__sampled_loop *l, double *gain, double unit) {
   double own = ethd__sampled_stable(l) ? *gain : 0;
   if (own > 0 && ethd__sampled_gives_way(l)) return band_end(l, gain, 10 * unit);
@@ -68,8 +68,8 @@ double ethd__sampled_damping_max(const ethd__sampled_loop *loop) {
   return gain_max(&l, &l.damping, l.mass / l.period);
 }
 
-/* Walks from the loop's gains to those asked for, by the steps of a band's search. The stable gains of a rigid device
-   are one band, so that the end of the walk decides. */
+/* Walks from the loop's gains to the requested ones, by the steps of a band's search. The stable gains of a rigid
+   device are one band, so only the end of the walk is tested. */
 bool ethd__sampled_stable_up_to(const ethd__sampled_loop *loop, double stiffness_times, double damping_times) {
   const double decades = log10(fmax(stiffness_times, damping_times));
   const int steps = ethd__sampled_gives_way(loop) ? (int)ceil(4 * STEPS_PER_DECADE * decades) : 1;
@@ -87,7 +87,7 @@ bool ethd__sampled_stable_up_to(const ethd__sampled_loop *loop, double stiffness
 
 static double delay_of(const ethd__sampled_loop *l) { return l->delay * l->period + l->late; }
 
-/* Delays that differ from whole ticks by rounding are whole. */
+/* A delay that differs from whole ticks only by rounding counts as whole. */
 void ethd__sampled_set_delay(ethd__sampled_loop *l, double delay) {
   l->delay = (int)floor(delay / l->period * (1 + 1e-12));
   l->late = fmax(0, delay - l->delay * l->period);

@@ -12,7 +12,7 @@ double ethd__stop_margin(const ethd__bounds_stop *s, double speed) {
   return s->gap - ethd__stop_lag(s, speed) - speed * speed / (2 * ethd__stop_deceleration(s));
 }
 
-/* Solves v^2/(2a) + c v = g, where g is the gap that is left at speed 0 and c how much of it each m/s takes. */
+/* Solves v^2/(2a) + c v = g, where g is the remaining gap at speed 0 and c its decrease for each m/s. */
 double ethd__stop_speed(const ethd__bounds_stop *s) {
   double a = ethd__stop_deceleration(s), g = s->gap - s->friction / s->stiffness;
   double c = s->viscous / s->stiffness + s->behind;

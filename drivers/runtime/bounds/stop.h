@@ -1,4 +1,4 @@
-/* Stopping at a wall, in closed form: the ring meets the wall at v, and the finger ahead of it goes on at v.
+/* Stopping at a wall, in closed form: the ring meets the wall at v, and the finger ahead of it continues at v.
 
         finger   ring        |//////     lag      how far the finger is ahead of the ring's centre
           ( o   )    --> v   |//////     gap      R_r - R_f: the pad touches when the finger is that far ahead
@@ -22,7 +22,7 @@ double ethd__stop_deceleration(const ethd__bounds_stop *stop);
 /* Returns the steady lag, m: (f_c + b_v v)/K_x, and what the estimate's delay adds. */
 double ethd__stop_lag(const ethd__bounds_stop *stop, double speed);
 
-/* Returns the margin gap - lag - v^2/(2a), m. If it is >= 0, the ring rests when the finger touches it. */
+/* Returns the margin gap - lag - v^2/(2a), m. If it is >= 0, the ring stands still when the finger touches it. */
 double ethd__stop_margin(const ethd__bounds_stop *stop, double speed);
 
 /* Returns the highest speed with margin >= 0, m/s, 0 if there is none. */

@@ -16,7 +16,7 @@
 
 /* ---- questions ---- */
 
-/* What a driver's table says is judged where it is opened. */
+/* Opening the device checks the driver's table. */
 static ethd_verdict ask_table(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
   if (!ethd__conform_rig_open(def, &r))
@@ -75,7 +75,7 @@ static ethd_verdict ask_limits(const ethd_conform_def *def, ethd_conform_answer 
   return a->verdict;
 }
 
-/* The fault row with the hardest reaction among those that were seen; 0 when none was. */
+/* The fault row with the hardest reaction among the reported ones; 0 if there is none. */
 static ethd_fault worst_row(const ethd__conform_rig *r, ethd_reaction *reaction) {
   ethd_fault worst = ETHD_FAULT_NONE;
   *reaction = ETHD_REACTION_NONE;
@@ -89,8 +89,8 @@ static ethd_fault worst_row(const ethd__conform_rig *r, ethd_reaction *reaction)
   return worst;
 }
 
-/* A fault row that is only counted breaks nothing, because answers do come late now and then. Nor does a row that
-   comes from this machine being late. */
+/* A fault row that is only counted breaks no rule, because answers sometimes come late. Nor does a row caused by this
+   machine's lateness. */
 static ethd_verdict judge_samples(const ethd__conform_rig *r, ethd_conform_answer *a) {
   char readings[48] = "";
   ethd_reaction reaction;

@@ -10,10 +10,10 @@
 #include "clock.h"
 
 #define CLEARING 0.3 /* s */
-#define PAUSED 0.1   /* s: samples farther apart don't count for the spacing, since none was requested in between */
-#define IDLE 1000000 /* ns that an I/O thread sleeps when it had nothing to do */
+#define PAUSED 0.1   /* s: longer spacings don't count, since no sample was requested in between */
+#define IDLE 1000000 /* ns: sleep of an I/O thread without work */
 #define STEPS 8      /* steps of the angle that an acceleration must cause to be seen */
-#define LOOK 0.01    /* s after which it looks again whether the joints move, */
+#define LOOK 0.01    /* s between two checks of the joints' motion, */
 #define SETTLE 200   /* attempts at most */
 #define STANDS 0.02  /* rad/s: a slower joint stands */
 
@@ -38,7 +38,7 @@ void ethd__conform_rig_await(ethd__conform_rig *r) {
   r->late = fmax(r->late, 1e-9 * (double)(ethd__clock_now() - r->now));
 }
 
-/* ---- I/O, as the loop has it done: by threads, or with the tick of a virtual clock ---- */
+/* ---- I/O, as in the loop: by threads, or with the tick of a virtual clock ---- */
 
 static void *run_unit(void *unit_) {
   const ethd__conform_rig_unit *unit = unit_;
@@ -95,7 +95,7 @@ static void serve(ethd__conform_rig *r, double seconds) {
 }
 
 ethd_status ethd__conform_rig_start(ethd__conform_rig *r) {
-  if (ethd__conform_stopped(r->def)) return ETHD_E_UNFINISHED; /* nothing is enabled any more */
+  if (ethd__conform_stopped(r->def)) return ETHD_E_UNFINISHED; /* no device is enabled after a stop */
   ethd_status status = ethd_device_start(r->device);
   if (status < 0) {
     ethd_device_clear(r->device);
@@ -146,7 +146,7 @@ static void note_joints(ethd__conform_rig *r, const ethd_sense *s) {
   r->samples++;
 }
 
-/* Notes a reading of the finger, of whatever sensor. */
+/* Notes a reading of the finger, from any sensor. */
 static void note_reading(ethd__conform_rig *r, const ethd_sense *s) {
   if (!(s->have & (ETHD_HAVE_FINGER | ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS))) return;
   r->ahead += s->sample_ns > (r->def->device->is_virtual ? r->now : ethd__clock_now());

@@ -28,7 +28,7 @@ struct ethd__conform_rig {
   char message[ETHD_MESSAGE_MAX];
   /* over all ticks since the device was opened */
   double resolution, speed, age; /* smallest step, rad; fastest, rad/s; oldest, s */
-  double late;                   /* s: the latest that a tick came, through no fault of the device */
+  double late;                   /* s: the largest lateness of a tick, which isn't the device's fault */
   double span;                   /* s: sum of the `spans` times between neighbouring samples */
   int64_t faults, grave, reading_ns;
   int backwards, ahead, failed, finite, samples, spans, readings;
@@ -37,7 +37,7 @@ struct ethd__conform_rig {
 ethd_verdict ethd__conform_rig_answer(ethd_conform_answer *a, ethd_verdict verdict, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Returns whether def->stop ends the questions. From then on ticks take no time, and the device has been made safe. */
+/* Returns whether def->stop ends the questions. Then ticks take no time, and the device has been made safe. */
 bool ethd__conform_stopped(const ethd_conform_def *def);
 
 /* Opens the device; false: r->message says why not. All [main]. */
@@ -51,10 +51,10 @@ void ethd__conform_rig_stop(ethd__conform_rig *r);
 void ethd__conform_rig_end(ethd__conform_rig *r);
 
 /* Starts the device, for the first time or after a stop, and returns its status. A device that refuses is asked to
-   leave its own fault first, which may be its watchdog's from the question before. */
+   clear its own fault first, possibly its watchdog's from the question before. */
 ethd_status ethd__conform_rig_start(ethd__conform_rig *r);
 
-/* Leaves the device without any message for so long, even from its I/O threads; not for a virtual clock. */
+/* Sends no message to the device for this time, not even from its I/O threads; not for a virtual clock. */
 void ethd__conform_rig_hush(ethd__conform_rig *r, double seconds);
 
 /* Waits for the next tick's instant. */

@@ -3,27 +3,27 @@
 
 #include <math.h>
 
-#define LAPSE 0.05  /* s after which no torque may be left; two windows of half of this show whether one is */
-#define SPACINGS 4  /* of joint samples that a window has at least, which makes it longer on a slow bus */
-#define NUDGE 0.002 /* s: a torque so short moves next to nothing, but a driver may remember it */
-#define LEFT 0.25   /* share of an acceleration that friction or a slope may leave */
+#define LAPSE 0.05  /* s after which no torque may remain; measured over two windows of half this time */
+#define SPACINGS 4  /* least number of sample spacings in a window, which is longer on a slow bus */
+#define NUDGE 0.002 /* s: such a short torque moves almost nothing, but a driver may remember it */
+#define LEFT 0.25   /* share of an acceleration that may remain, by friction or a slope */
 #define SILENCE 1.0 /* s without any message */
 
 /* Returns the length of a window, s; two windows show an acceleration. */
 static double window(const ethd__conform_rig *r) { return fmax(LAPSE / 2, SPACINGS * ethd__conform_rig_spacing(r)); }
 
-/* Returns false when such a push would be lost in the steps of the angle, so that its result would answer nothing. */
+/* Returns false if the push is too weak to be measured in the steps of the angle. */
 static bool is_pushed(const ethd__conform_rig *r, double acceleration, ethd_conform_answer *a) {
   double least = ethd__conform_rig_least(r, window(r));
   if (acceleration > 0 && acceleration >= least) return true;
   return ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED,
-                                  "%+.3g rad/s^2 under %g Nm, %.3g would show: it needs more torque", acceleration,
+                                  "%+.3g rad/s^2 under %g Nm, but %.3g is needed: use more torque", acceleration,
                                   r->def->torque, least),
          false;
 }
 
-/* Pushes in the other direction first, under a torque that is held, and returns the acceleration at the end, rad/s^2. A
-   device that gains no more speed then is blocked, and would look the same without a torque; for it the result is 0,
+/* Pushes in the other direction first, with a held torque, and returns the acceleration at the end, rad/s^2. If the
+   speed no longer rises then, the device is blocked, and the end of a torque would be invisible; the result is then 0,
    and the answer says so. */
 static double held(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
@@ -36,7 +36,7 @@ static double held(const ethd_conform_def *def, ethd_conform_answer *a) {
   if (!is_pushed(&r, pushed, a)) return 0;
   if (end >= 0.1 * pushed && end >= ethd__conform_rig_least(&r, window(&r))) return end;
   return ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED,
-                                  "%.3g rad/s^2, but %.3g once the torque was held for %g s: something is in its way",
+                                  "%.3g rad/s^2, but %.3g after the torque was held for %g s: an obstacle blocks it",
                                   pushed, end, 4 * window(&r)),
          0;
 }
@@ -122,7 +122,7 @@ ethd_verdict ethd__conform_restart(const ethd_conform_def *def, ethd_conform_ans
     ethd__conform_rig_end(&r);
     return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "started anew: %s", ethd_status_sentence(status));
   }
-  /* a sound arm may still roll from the push: what is left of a torque shows in speed that is gained */
+  /* a good arm may still move from the push: only a gain of speed shows a remaining torque */
   double left = ethd__conform_rig_acceleration(&r, 0, 0, 0, window(&r));
   double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, window(&r));
   ethd__conform_rig_end(&r);

@@ -1,25 +1,25 @@
-/* The questions to a device in space. */
+/* The questions for a device in space. */
 #include <math.h>
 #include <string.h>
 
 #include "clock.h"
 #include "conform/conform_rig.h"
 
-#define LOOK 0.5   /* s for which it only reads */
+#define LOOK 0.5   /* s of reading only */
 #define PUSH 0.1   /* s for which a command is held */
-#define PAUSE 0.02 /* s in which a device may come to its safe state */
+#define PAUSE 0.02 /* s in which a device may reach its safe state */
 #define STILL 1e-3 /* m in PUSH without a command */
-#define OFF 0.2    /* share by which a motion may differ from what was commanded */
-#define LEFT 0.05  /* share of a motion that `safe` may leave; of one that nothing brakes, */
+#define OFF 0.2    /* share by which a motion may differ from the commanded motion */
+#define LEFT 0.05  /* share of a motion that may remain after `safe`; without brakes, */
 #define ROLLS 0.25 /* this */
-#define OFTEN 0.1  /* share of calls that may be longer than half a period: this machine was late, not the driver */
-#define RAMP 1.0   /* m/s^2, N/ms: how a command grows where the setup doesn't say it */
+#define OFTEN 0.1  /* share of calls that may exceed half a period, because this machine is late */
+#define RAMP 1.0   /* m/s^2, N/ms: growth of a command if the setup has no limit */
 
 typedef struct space_run {
   ethd__conform_rig r;
   ethd_space_sense sense; /* the last sample */
   ethd_vec3 written;      /* the last command */
-  ethd_vec3 way;          /* sum of all commands, as the device says that it has taken them, times the period */
+  ethd_vec3 way;          /* sum of all commands, as the device reports them, times the period */
   int stale, calls, slow;
   int64_t longest; /* ns of a call */
 } space_run;
@@ -72,7 +72,7 @@ static void tick_space(space_run *s, const ethd_vec3 *command) {
   time_call(s, begin);
 }
 
-/* Runs for a time with a command to which it goes, and of which it comes back, no faster than the setup says. */
+/* Runs for a time with a command; it rises and falls within the setup's limits. */
 static void run_space(space_run *s, double seconds, ethd_vec3 to) {
   const ethd_space_setup *setup = s->r.def->device->space;
   const double rate = setup->kind == ETHD_SPACE_VELOCITY ? setup->acceleration : setup->force_rate;
@@ -93,15 +93,15 @@ static bool begin_space(const ethd_conform_def *def, space_run *s, ethd_conform_
 
 static ethd_vec3 place_of(const space_run *s) { return ethd_vec3_of(s->sense.x); }
 
-/* Returns by how much the effector moves in the time along a unit vector, m, while the last command is renewed, or, with
-   `write` false, nothing is written. */
+/* Returns the effector's motion in this time along a unit vector, m, while the last command is renewed or, with `write`
+   false, no command is written. */
 static double moved(space_run *s, ethd_vec3 along, bool write, double seconds) {
   const ethd_vec3 from = place_of(s), held = s->written;
   for (int k = 0, n = (int)ceil(seconds * 1e9 / (double)s->r.period); k < n; k++) tick_space(s, write ? &held : NULL);
   return ethd_vec3_dot(along, ethd_vec3_sub(place_of(s), from));
 }
 
-/* Returns how far a device is pushed: as it is asked for, within the setup's limit. */
+/* Returns the size of a push: the requested one, within the setup's limit. */
 static double push_of(const ethd_conform_def *def) {
   const ethd_space_setup *setup = def->device->space;
   return fmin(def->torque, setup->kind == ETHD_SPACE_VELOCITY ? setup->speed : setup->force);
@@ -136,7 +136,7 @@ static ethd_verdict ask_space_sense(const ethd_conform_def *def, ethd_conform_an
                                   s.stale);
 }
 
-/* A driver's read and write return at once, whatever its device does. */
+/* A driver's read and write return at once, in any state of its device. */
 static ethd_verdict ask_space_calls(const ethd_conform_def *def, ethd_conform_answer *a) {
   space_run s;
   if (!begin_space(def, &s, a)) return a->verdict;
@@ -159,7 +159,7 @@ static ethd_verdict ask_space_zero(const ethd_conform_def *def, ethd_conform_ans
                                   "%.3g m in %g s without a command, %g is allowed", way, PUSH, STILL);
 }
 
-/* Pushes along both ways of each axis: the effector goes there, and as far as the device says that it was commanded. */
+/* Pushes in both directions of each axis: the effector moves there, as far as the commands that the device reports. */
 static ethd_verdict ask_space_axes(const ethd_conform_def *def, ethd_conform_answer *a) {
   const bool by_velocity = def->device->space->kind == ETHD_SPACE_VELOCITY;
   const double push = push_of(def);
@@ -178,17 +178,17 @@ static ethd_verdict ask_space_axes(const ethd_conform_def *def, ethd_conform_ans
     ethd__conform_rig_end(&s.r);
     if (!(way > 0) || s.r.failed)
       return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN,
-                                      "%+.3g %s along axis %d: it went %.3g m; failed calls: %d", sign * push,
+                                      "%+.3g %s along axis %d: it moved %.3g m; failed calls: %d", sign * push,
                                       by_velocity ? "m/s" : "N", k / 2 + 1, sign * way, s.r.failed);
     worst = fmax(worst, fabs(way - wanted) / wanted);
   }
   if (!by_velocity) return ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT, "%g N along each axis moved it there", push);
   return ethd__conform_rig_answer(
       a, worst <= OFF ? ETHD_VERDICT_KEPT : ETHD_VERDICT_BROKEN,
-      "%g m/s along each axis: its way and what it says it was commanded differ by %.2g of it", push, worst);
+      "%g m/s along each axis: its motion and its reported commands differ by a share of %.2g", push, worst);
 }
 
-/* Made safe while it moves, the device does what its table says, whatever is written. */
+/* Made safe while it moves, the device takes the safe state of its table, whatever is written. */
 static ethd_verdict ask_space_safe(const ethd_conform_def *def, ethd_conform_answer *a) {
   const ethd_vec3 along = {1, 0, 0};
   space_run s;

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #define MACHINE "pid:[4026531836]" /* PROC_PID_INIT_INO of the kernel's linux/proc_ns.h */
-#define FAR 2                      /* a depth that can't be counted */
+#define FAR 2                      /* a depth that can't be determined */
 
 static bool link_is(const char *path, const char *wanted) {
   char text[64] = "";
@@ -18,7 +18,7 @@ bool ethd__in_container(void) {
   return getpid() == 1 || (access("/proc/self/ns/pid", F_OK) == 0 && !link_is("/proc/self/ns/pid", MACHINE));
 }
 
-/* The parent by /proc/PID/stat, where the name before it may hold anything; -1: it can't be read. */
+/* The parent by /proc/PID/stat, in which the preceding name may hold any characters; -1: it can't be read. */
 static pid_t parent_of(pid_t process) {
   char path[32], text[512], *end;
   snprintf(path, sizeof path, "/proc/%d/stat", (int)process);
@@ -46,7 +46,7 @@ int ethd__container_depth(void) {
   if (getpid() == 1) return 0;
   if (!ethd__in_container()) return -1;
   snprintf(own, sizeof own, "%d", (int)getpid());
-  if (!link_is("/proc/self", own)) return getppid() == 1 ? 1 : FAR; /* this /proc is another namespace's */
+  if (!link_is("/proc/self", own)) return getppid() == 1 ? 1 : FAR; /* this /proc is of another namespace */
   if (is_systemd()) return -1;
   for (pid_t p = getppid(); p != 1; p = parent_of(p), depth++) {
     if (p == 0) return -1;

@@ -99,8 +99,8 @@ void ethd_device_safe(ethd_device *d) ETHD_RT {
 
 /* ---- a child made by fork ---- */
 
-/* The parent process still uses the lines, the sockets and the guardian's page. A driver that is called in the child
-   would change them for the parent. */
+/* The parent process still uses the lines, the sockets and the guardian's page. A driver call in the child would change
+   them for the parent. */
 static bool is_forked(const ethd_device *d) { return d->process != getpid(); }
 
 /* ---- I/O ---- */
@@ -145,8 +145,8 @@ static ethd_status stop_one(ethd_device *d, uint32_t i) {
   return status;
 }
 
-/* Returns which driver is the i-th to start, from 0, and the i-th from the end to stop. Those that take commands start
-   last: a drive that is enabled doesn't wait for another driver, however long that takes. */
+/* Returns the i-th driver to start, from 0, which is the i-th from the end to stop. Drivers that take commands start
+   last: an enabled drive must not wait for a slow driver. */
 static uint32_t turn(const ethd_device *d, uint32_t i) {
   uint32_t order[ETHD_DRIVERS_MAX] = {0}, n = 0;
   for (uint32_t k = 0; k < d->count; k++)
@@ -156,7 +156,7 @@ static uint32_t turn(const ethd_device *d, uint32_t i) {
   return order[i];
 }
 
-/* A prepared device isn't open. */
+/* A device that is only prepared can't start. */
 ethd_status ethd_device_start(ethd_device *d) {
   if (is_forked(d) || d->only_prepares) return ETHD_E_DEVICE;
   if (d->inject && ethd__inject_start(d->inject)) return ETHD_E_DEVICE;
@@ -206,12 +206,12 @@ uint32_t ethd_device_figures(const ethd_device *d, ethd_figure *out, uint32_t ma
   return n;
 }
 
-/* Says what `safe` leads to; NULL where it is what people expect, no torque in the plane. */
+/* Describes the state after `safe`; NULL for the usual one, no torque in the plane. */
 static const char *safe_remark(const ethd_device *d) {
   switch (ethd_device_safe_is(d)) {
-  case ETHD_SAFE_NO_SPEED: return "safe is zero speed: the drives hold their places, with all their force";
-  case ETHD_SAFE_BRAKES: return "safe is the brakes: what is caught stays caught until they open";
-  default: return d->in_space ? "safe is zero torque: what no counterweight holds falls" : NULL;
+  case ETHD_SAFE_NO_SPEED: return "safe is zero speed: the drives hold their positions with full force";
+  case ETHD_SAFE_BRAKES: return "safe is closed brakes: a caught finger stays caught until they open";
+  default: return d->in_space ? "safe is zero torque: an arm without counterweights falls" : NULL;
   }
 }
 
@@ -235,7 +235,7 @@ void ethd_device_clear(ethd_device *d) {
 }
 
 ethd_status ethd_device_home(ethd_device *d, const double q[2]) {
-  ethd_status status = ETHD_E_ARGUMENT; /* none of the drivers has anything to find out */
+  ethd_status status = ETHD_E_ARGUMENT; /* no driver has a home */
   if (is_forked(d)) return ETHD_E_DEVICE;
   for (uint32_t i = 0; i < d->count; i++) {
     if (!d->at[i].driver->home) continue;
@@ -252,7 +252,7 @@ const char *ethd_device_why(const ethd_device *d) {
   return says ? says : "";
 }
 
-/* Later drivers add what earlier ones don't know. */
+/* Later drivers fill the numbers that earlier ones don't know. */
 ethd_dynamics ethd_device_dynamics(const ethd_device *d) {
   ethd_dynamics all = ethd_dynamics_unknown();
   for (uint32_t i = 0; i < d->count; i++) {

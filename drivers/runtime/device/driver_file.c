@@ -25,7 +25,7 @@ static bool keys_are_words(const char *const *keys) {
   return true;
 }
 
-/* Says what is wrong with the functions; NULL when nothing is. */
+/* Returns a fault of the table's functions; NULL: none. */
 static const char *functions_fault(const ethd_driver *d) {
   if (!d->open || !d->close) return d->open ? "has no close" : "has no open";
   if (d->write && !d->safe) return "takes torque and has no safe to remove it";
@@ -37,7 +37,7 @@ static const char *functions_fault(const ethd_driver *d) {
 
 #define VERSION_AT 28
 
-/* Where ETHD_DRIVER_ABI has the size of a struct. */
+/* The position of each struct's size in ETHD_DRIVER_ABI. */
 static const struct {
   const char *name;
   uint32_t at, mask, size;
@@ -74,7 +74,7 @@ static ethd_status refuse_abi(uint32_t abi, char *what) {
                    sizes[i].name, 8 * (abi >> sizes[i].at & sizes[i].mask), sizes[i].size);
 }
 
-/* The ABI comes first: when it differs, nothing behind it can be trusted. */
+/* The ABI comes first: if it differs, the following fields can't be trusted. */
 static ethd_status check_head(const ethd_driver *d, char *what) {
   if (!d->abi) return ethd__say(what, ETHD_E_ABI, "its table doesn't say its abi: .abi = ETHD_DRIVER_ABI is needed");
   if (d->abi != ETHD_DRIVER_ABI) return refuse_abi(d->abi, what);
@@ -120,7 +120,7 @@ static void foreign(const char *what) {
 }
 
 static ethd_status load(const char *path, ethd_driver *out, char *what) {
-  char *own = strchr(path, '/') ? NULL : ethd__path_join(".", path); /* else dlopen looks where libraries are */
+  char *own = strchr(path, '/') ? NULL : ethd__path_join(".", path); /* else dlopen searches the libraries' folders */
   void *handle = dlopen(own ? own : path, RTLD_NOW | RTLD_LOCAL);
   free(own);
   if (!handle) return ethd__say(what, ETHD_E_LOAD, "%s", dlerror());

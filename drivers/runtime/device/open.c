@@ -11,9 +11,9 @@
 #include "text/text.h"
 
 #define BLANKS " \t"
-#define INJECT "inject"       /* two keys are no driver's own: a script of what is to go wrong, */
-#define HANG_TIME "hang_time" /* and how long code of a driver's file may take to return, s */
-#define HANG_TIME_DEFAULT 30  /* s: a fieldbus needs some ten seconds to come up */
+#define INJECT "inject"       /* two keys belong to no driver: a script of faults, */
+#define HANG_TIME "hang_time" /* and the time limit for code of a driver's file, s */
+#define HANG_TIME_DEFAULT 30  /* s: a fieldbus needs about ten seconds to start */
 
 static const char *file_of(const ethd_device_def *def) { return def->file ? def->file : "the defaults"; }
 
@@ -66,8 +66,7 @@ static ethd_status check_driver(const naming *n, const ethd_driver *driver) {
   return ethd__say(n->message, status, "%s: device.driver: %.*s", file_of(n->def), ETHD_MESSAGE_MAX / 2, what);
 }
 
-/* Refuses a driver that has nothing for the front that the device is opened for: it may count on a setup that isn't
-   there. */
+/* Refuses a driver without functions for the device's front: it may use a setup that doesn't exist. */
 static ethd_status check_front(const naming *n, const ethd_driver *driver) {
   const ethd_driver d = ethd__driver_whole(driver);
   const bool plane = d.read || d.write, space = d.read_space || d.write_space;
@@ -77,7 +76,7 @@ static ethd_status check_front(const naming *n, const ethd_driver *driver) {
                    d.id, n->device->in_space ? "space" : "the plane");
 }
 
-/* Puts the driver of a name, of `length` bytes, into the stack's next row. */
+/* Adds the driver of a name, of `length` bytes, to the device. */
 static ethd_status add_driver(const naming *n, const char *name, size_t length) {
   ethd_device *s = n->device;
   size_t mark = strlen(ETHD_DRIVER_FILE);
@@ -103,7 +102,7 @@ static ethd_status add_driver(const naming *n, const char *name, size_t length) 
   return status;
 }
 
-/* Puts the drivers of "servo, ring, file:mine.so" into the stack's rows. */
+/* Adds the drivers of "servo, ring, file:mine.so" to the device. */
 static ethd_status name_drivers(const naming *n, const char *ids) {
   for (const char *id = ids;; id++) {
     id += strspn(id, BLANKS);
@@ -123,7 +122,7 @@ static const char *own_key(const char *key, const char *id) {
   return strncmp(key, id, length) == 0 && key[length] == '.' ? key + length + 1 : NULL;
 }
 
-/* Every key has an owner, so that each driver is given all of its own and nothing is left over. */
+/* Every key must belong to a driver, so that none is ignored. */
 static ethd_status check_owners(const ethd_device *s, const ethd_device_def *def, char *message) {
   for (uint32_t k = 0; s->count > 1 && k < def->setting_count; k++) {
     bool owned = is_common(def->settings[k].key);
@@ -137,7 +136,7 @@ static ethd_status check_owners(const ethd_device *s, const ethd_device_def *def
   return ETHD_OK;
 }
 
-/* Returns the key as driver i is given it, NULL if it isn't its own. */
+/* Returns the key in the form that driver i gets, NULL if it belongs to another driver. */
 static const char *given_key(const ethd_device *s, uint32_t i, const char *key) {
   const char *own = own_key(key, s->at[i].driver->id);
   if (own) return own;
@@ -161,8 +160,8 @@ static uint32_t own_settings(const ethd_device *s, uint32_t i, const ethd_device
   return n;
 }
 
-/* Refuses a setting that occurs twice. A file can't have the same key twice, but a lone driver's with and without its
-   id. */
+/* Refuses a setting that occurs twice. A file can't have the same key twice, but a single driver's key may occur with
+   and without its id. */
 static ethd_status check_twice(const ethd_device_def *own, char *message) {
   for (uint32_t k = 0; k < own->setting_count; k++)
     for (uint32_t first = 0; first < k; first++)
@@ -174,7 +173,7 @@ static ethd_status check_twice(const ethd_device_def *own, char *message) {
 
 /* ---- opening ---- */
 
-/* Checks what an open driver says about itself. */
+/* Checks the units and limits of an open driver. */
 static ethd_status check_open(ethd_device *s, uint32_t i, char *message) {
   const ethd_driver *driver = s->at[i].driver;
   ethd_error error;
@@ -189,7 +188,7 @@ static ethd_status check_open(ethd_device *s, uint32_t i, char *message) {
                 : ETHD_OK;
 }
 
-/* Makes one printable line of whatever a file's code left there. */
+/* Makes one printable line of a message from a file's code. */
 static void one_line(char message[ETHD_MESSAGE_MAX]) {
   message[ETHD_MESSAGE_MAX - 1] = 0;
   for (char *p = message; *p; p++)
@@ -245,7 +244,8 @@ static ethd_status add_joints(const naming *n, uint32_t i, uint32_t *measured) {
   return status;
 }
 
-/* A step needs the angles of both joints; what a driver doesn't say may be both. Nothing has been touched yet. */
+/* A step needs the angles of both joints; a driver that doesn't name its joints may have both. No device has been
+   touched yet. */
 static ethd_status check_joints(const naming *n, const char *ids) {
   char quote[ETHD_QUOTE_MAX];
   uint32_t measured = 0;

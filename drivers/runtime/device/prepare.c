@@ -1,4 +1,4 @@
-/* Makes a driver that says what is known before anybody touches its device: its prepare takes the place of its open. */
+/* Makes a driver that gives its information without touching its device: its prepare replaces its open. */
 #include <stddef.h>
 
 #include "device/driver_file.h"

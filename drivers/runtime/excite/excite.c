@@ -1,10 +1,9 @@
-/* Moves the arm so that its numbers can be identified from the motion: the torques are sums of many sines, while a soft
-   spring holds the ring near a point. The driver does this by reporting a finger that doesn't exist, whose position and
-   velocity make the tracking law give these torques:
+/* Multisine excitation of the arm, to identify its parameters from the motion; a soft spring holds the ring near a
+   point. The driver reports a virtual finger, whose position and velocity make the tracking law command these torques:
 
      tau = K_t J^-1 (X_f - X_r) + B_t J^-1 (V_f - V_r)    with X_f the point, and V_f = J tau_sines / B_t
 
-   so that law, guard and recording are those of any session. It follows a driver that moves:
+   so that law, guard and recording are those of any session. It follows a driver of the motors:
    [device] driver = servo, excite. */
 #include <math.h>
 #include <stdlib.h>
@@ -17,9 +16,9 @@
 #include "text/error_text.h"
 
 #define TAU 6.28318530717958647692
-#define LOOK 20.0 /* s over which the peak of the sines' sum is searched */
+#define LOOK 20.0 /* s: range of the search for the peak of the sines' sum */
 #define LINES 20  /* sines of each joint */
-#define PEAK 0.7  /* share of the limit that the sines' peak gets; the rest is for the spring */
+#define PEAK 0.7  /* share of the limit for the sines' peak; the rest is for the spring */
 
 enum { TORQUE, LOW, HIGH, X, Y, HALF, PARAMS };
 
@@ -50,8 +49,8 @@ static double sines(const excite *e, int joint, double t) {
 }
 
 /* Chooses the sines. Their frequencies are a geometric series, with those of joint 2 between those of joint 1, so that
-   the torques don't repeat and each minute says something new. Phases go by the golden ratio, so that the sines don't
-   add up at any instant. */
+   the torques don't repeat and each minute gives new information. Phases follow the golden ratio, so that the sines
+   don't add up at any instant. */
 static void lay(excite *e, int joint) {
   const double golden = 0.61803398874989485;
   double low = ethd_log(e->p[LOW]), high = ethd_log(e->p[HIGH]), peak = 0;
@@ -89,7 +88,7 @@ static ethd_status start(void *device) {
   return ETHD_OK;
 }
 
-/* Adds the finger to the sense, in which the driver before has put the joints' angles. */
+/* Adds the finger to the sense, which has the joints' angles from the driver before. */
 static ethd_status read_finger(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
   excite *e = device;
   ethd_pose pose;
@@ -127,4 +126,4 @@ const ethd_driver ethd_driver_excite = {
     .close = free,
     .limits = limits,
     .joints = ethd__no_joints,
-    .prepare = open_excite /* it touches nothing */};
+    .prepare = open_excite /* it touches no device */};

@@ -7,7 +7,7 @@
 #include "loop/loop.h"
 
 #define COOKIE 0x6c6f6f70u
-#define SKEWED 0x6c6f6f80u /* and up: the definition of a program in which a struct has another size */
+#define SKEWED 0x6c6f6f80u /* + i: the definition of a program in which struct i has another size */
 
 static const struct {
   const char *name;
@@ -50,7 +50,7 @@ static const ethd__loop_front *front_of(const ethd_loop_def *d) {
   return d->space ? &ethd__loop_space : &ethd__loop_plane;
 }
 
-/* The controller takes its speeds from its own period, whatever the clock says: at another one they would be wrong. */
+/* The controller computes speeds with its own period, so with another period of the loop they would be wrong. */
 static ethd_status check_period(const ethd_loop_def *d, ethd_error *error) {
   double period = front_of(d)->period(d);
   if (d->period == period) return ETHD_OK;
@@ -83,14 +83,14 @@ static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
 
 static int64_t nanoseconds(double s) { return s < 1e9 ? llrint(1e9 * s) : INT64_MAX; }
 
-/* Returns how late the loop may be: the smaller of the application's limit and what any device tolerates. A slow
-   device's samples lie farther apart, which says nothing about the loop's own lateness. */
+/* Returns the limit of the loop's lateness: the smaller of the application's limit and the tolerance of any device. The
+   longer spacing of a slow device's samples doesn't change it. */
 static double gap_of(const ethd_loop_def *d) {
   bool is_limited = isfinite(ethd_device_limits(d->device).gap);
   return is_limited ? fmin(d->gap, ethd_limits_device().gap) : d->gap;
 }
 
-/* Returns how far apart two joint samples may be according to application and device, s. */
+/* Returns the longest spacing of two joint samples that application and device allow, s. */
 static double between_samples(const ethd_loop_def *d) { return fmin(d->gap, ethd_device_limits(d->device).gap); }
 
 ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error) {

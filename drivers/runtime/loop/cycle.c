@@ -1,4 +1,4 @@
-/* What the control thread does in each tick. Nothing here allocates or locks, and the only system call is to sleep. */
+/* The control thread's work in each tick. Nothing here allocates or locks, and the only system call is the sleep. */
 #include <errno.h>
 #include <math.h>
 #include <stdbool.h>
@@ -68,7 +68,7 @@ static void push(ethd_loop *l) {
 
 /* ---- one tick ---- */
 
-/* Nothing is known about a device that can't be read, so the controller gets NaN and reports its input fault. */
+/* The state of a device that can't be read is unknown, so the controller gets NaN and reports its input fault. */
 static void blind(ethd_loop *l) {
   raise(&l->stats.read_failures, 1);
   l->sense.head.have = 0;
@@ -76,8 +76,8 @@ static void blind(ethd_loop *l) {
   l->front->blind(l);
 }
 
-/* A row that takes the torque away is acted on at once. A stop waits for the next sample: from an old one the ring's
-   speed would seem to fall. Should none come, row FEEDBACK_OLD ends the torque. */
+/* A row that removes the torque acts at once. A stop waits for the next sample: with an old one the ring's speed would
+   seem to fall. If none comes, row FEEDBACK_OLD ends the torque. */
 static bool is_pressing(const ethd__sense_head *s) {
   for (int64_t rows = s->faults | s->grave; rows; rows &= rows - 1) {
     ethd_fault row = (ethd_fault)__builtin_ctzll((uint64_t)rows);
@@ -86,8 +86,8 @@ static bool is_pressing(const ethd__sense_head *s) {
   return 0;
 }
 
-/* A torque isn't held for longer than two steps may be apart. Before the first step after a start none is held, and
-   the device may take a little longer. */
+/* A torque isn't held for longer than the allowed gap between two steps. Before the first step after a start no torque
+   is held, and the device may take a little longer. */
 static void watch_age(ethd_loop *l, ethd_status status) {
   l->stale = status > 0 ? l->stale + 1 : 0;
   if (l->stale > (l->ramp ? l->hold : ETHD__HOLD_MAX / l->period))
@@ -100,7 +100,7 @@ static void disarm(ethd_loop *l) {
   l->was_armed = 0;
 }
 
-/* False when there is no newer sample than at the last step: the torque is then held, unless the loop was disarmed. */
+/* False if there is no newer sample than at the last step: the torque is then held, unless the loop was disarmed. */
 static bool read_device(ethd_loop *l) {
   ethd_status status = l->front->read(l);
   watch_age(l, status);
@@ -122,7 +122,7 @@ static bool read_device(ethd_loop *l) {
   return 1;
 }
 
-/* The share of the command that the device gets. Periods that a slow bus leaves without a step count as well. */
+/* The share of the command that the device gets. Periods without a step, on a slow bus, count as well. */
 static double share(ethd_loop *l) {
   if (l->ramp) l->ramp += l->sense.head.missed;
   double t = (double)l->ramp++ * l->def.period;
@@ -141,14 +141,14 @@ static void write_device(ethd_loop *l) {
   disarm(l);
 }
 
-/* Shows the watching thread since when a step runs. */
+/* Publishes the step's start for the watching thread. */
 static int64_t begin_step(ethd_loop *l) {
   int64_t now = ethd__loop_now(l);
   atomic_store_explicit(&l->stepping, now, memory_order_relaxed);
   return now;
 }
 
-/* If [main] gave this thread up while the step hung, the device and all else no longer belong to the thread. */
+/* If [main] abandoned this thread while the step hung, the thread no longer owns the device or any other data. */
 static void end_step(ethd_loop *l) {
   if (atomic_exchange_explicit(&l->stepping, 0, memory_order_acq_rel) != ETHD__LOOP_LEFT) return;
   for (;;) (void)!sleep_until(l, ethd__loop_now(l) + 1000000000);
@@ -219,7 +219,7 @@ static void advance(ethd_loop *l) {
   if (late > 0) overrun(l, late, (late + l->period - 1) / l->period);
 }
 
-/* True once [main] has asked for the device, unless it withdraws at this very moment. */
+/* True once [main] has asked for the device, unless it withdraws at the same moment. */
 static bool parked(ethd_loop *l) {
   int mode = ETHD__LOOP_ASKED;
   return atomic_compare_exchange_strong_explicit(&l->mode, &mode, ETHD__LOOP_PARKED, memory_order_acq_rel,

@@ -1,5 +1,5 @@
-/* The two fronts that a loop serves: what differs between a controller of the plane and its device, and one of space. A
-   loop has one of them from its creation on. */
+/* The two fronts of a loop: the differences between controller and device of the plane and those of space. A loop has
+   one of them from its creation on. */
 #ifndef ETHD__LOOP_FRONT_H
 #define ETHD__LOOP_FRONT_H
 
@@ -32,7 +32,7 @@ typedef struct ethd__effector {
   double x[3], v[3], normal[3], ability[ETHD_ABILITY];
 } ethd__effector;
 
-/* What a loop holds for its front. */
+/* A loop's sense, by its front. */
 typedef union ethd__loop_sense {
   ethd__sense_head head;
   ethd_sense plane;
@@ -48,20 +48,20 @@ typedef union ethd__loop_row {
 typedef struct ethd__near {
   ethd_surface at[ETHD_SURFACES_MAX];
   uint32_t count;
-  bool altered; /* the device was given something else than the controller's command: */
+  bool altered; /* the device got another command than the controller's: */
   double given[3];
 } ethd__near;
 
 typedef struct ethd__loop_front {
-  size_t row, tail; /* bytes of a row; where its tail is */
+  size_t row, tail; /* bytes of a row; offset of its tail */
   /* [rt] */
-  /* Adds what the device has to the sense, which is empty unless a sample is held, and returns the device's status. */
+  /* Adds the device's data to the sense, which is empty unless a sample is held, and returns the device's status. */
   ethd_status (*read)(ethd_loop *loop) ETHD_RT;
-  /* Says that nothing is known of the device: the controller gets NaN and reports its input fault. */
+  /* Marks the device as unknown: the controller gets NaN and reports its input fault. */
   void (*blind)(ethd_loop *loop) ETHD_RT;
-  /* Keeps the sense's sample, or puts the last one in its place. */
+  /* Stores the sense's sample, or replaces it by the last one. */
   void (*remember)(ethd_loop *loop, bool is_new) ETHD_RT;
-  /* Asks what is near the effector; NULL: the controller knows it. */
+  /* Finds the surfaces near the effector; NULL: the controller finds them. */
   void (*look)(ethd_loop *loop) ETHD_RT;
   void (*rehearse)(ethd_loop *loop) ETHD_RT;
   /* Steps the controller; returns true if it has taken a posted setup. */

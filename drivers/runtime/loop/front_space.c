@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#define UNIT 1e-5 /* by how much the square of a normal's length may differ from 1 */
+#define UNIT 1e-5 /* allowed difference from 1 of the square of a normal's length */
 #define KEPT (ETHD_SPACE_HAVE_NORMAL | ETHD_SPACE_HAVE_ABILITY)
 
 static ethd_status read_effector(ethd_loop *l) ETHD_RT {
@@ -34,7 +34,7 @@ static void put_back(const ethd__effector *last, ethd_space_sense *s) ETHD_RT {
   memcpy(s->ability, last->ability, sizeof s->ability);
 }
 
-/* What the soft start has left of a command, the controller must know: the limit of its change starts there. */
+/* The controller must know the part of a command that the soft start passes: the limit of its change starts there. */
 static void remember_effector(ethd_loop *l, bool is_new) ETHD_RT {
   ethd_space_sense *s = &l->sense.space;
   if (is_new)
@@ -46,9 +46,9 @@ static void remember_effector(ethd_loop *l, bool is_new) ETHD_RT {
   memcpy(s->commanded, l->near.given, sizeof s->commanded);
 }
 
-/* ---- what is near ---- */
+/* ---- near surfaces ---- */
 
-/* Returns the nearest surface, along its normal, of those that a step won't refuse; NULL: there is none. */
+/* Returns the nearest surface along its normal, among those that a step accepts; NULL: there is none. */
 static const ethd_surface *nearest(const ethd__near *near, const double x[3]) ETHD_RT {
   const ethd_surface *found = NULL;
   double least = (double)INFINITY;
@@ -63,7 +63,7 @@ static const ethd_surface *nearest(const ethd__near *near, const double x[3]) ET
   return found;
 }
 
-/* Says what the device can do along n, unless nothing of that is known. */
+/* Adds the device's ability along n, if any of it is known. */
 static void tell_ability(ethd_loop *l, const ethd_surface *along) ETHD_RT {
   ethd_space_sense *s = &l->sense.space;
   double n[3];
@@ -77,7 +77,7 @@ static void tell_ability(ethd_loop *l, const ethd_surface *along) ETHD_RT {
   s->have |= ETHD_SPACE_HAVE_ABILITY;
 }
 
-/* Of an effector whose place isn't known nothing is near. */
+/* An effector with an unknown position has no near surfaces. */
 static void look_around(ethd_loop *l) ETHD_RT {
   const ethd_space_sense *s = &l->sense.space;
   const bool seen = l->def.surfaces && !isnan(s->x[0] + s->x[1] + s->x[2]);
@@ -106,7 +106,7 @@ static ethd_status write_space(ethd_loop *l, bool armed, double share) ETHD_RT {
   for (int i = 0; i < 3; i++) c->value[i] = armed ? share * c->value[i] : 0;
   memcpy(l->near.given, c->value, sizeof c->value);
   if (!armed) {
-    c->kind = ethd_space_commands(l->def.space); /* no step may have said it yet */
+    c->kind = ethd_space_commands(l->def.space); /* before the first step it isn't set yet */
     c->safe = 1;
   }
   return ethd_device_write_space(l->def.device, l->due, c);

@@ -1,4 +1,4 @@
-/* What any thread may ask of a loop, and its tick on a virtual clock. */
+/* A loop's functions for any thread, and its tick on a virtual clock. */
 #include <string.h>
 #include <unistd.h>
 
@@ -74,8 +74,7 @@ static void read_histogram(const ethd_histogram *h, ethd_histogram *out) {
   out->max = __atomic_load_n(&h->max, __ATOMIC_RELAXED);
 }
 
-/* The controller's own count is whole only between two of its steps. A thread that hangs takes no rows: they count
-   here. */
+/* The controller's own count is consistent only between two of its steps. Rows of a hanging thread are counted here. */
 static void read_faults(const ethd_loop *l, uint64_t out[ETHD_FAULT_COUNT]) {
   ethd_counters now = {0};
   int64_t raised = 0;

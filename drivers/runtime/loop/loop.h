@@ -1,5 +1,5 @@
-/* The loop's own memory. Fields between two threads are atomic; each has one writer at a time, except flags that any
-   thread may raise. */
+/* The loop's memory. Fields shared by threads are atomic; each has one writer at a time, except flags that any thread
+   may raise. */
 #ifndef ETHD__LOOP_LOOP_H
 #define ETHD__LOOP_LOOP_H
 
@@ -11,23 +11,23 @@
 #include "loop/front.h"
 #include "loop/rt.h"
 
-/* Who may use device and controller: the loop, or [main] while it enables the device. */
+/* The owner of device and controller: the loop, or [main] while it enables the device. */
 enum { ETHD__LOOP_RUNS, ETHD__LOOP_ASKED, ETHD__LOOP_PARKED };
 
 #define ETHD__HOLD_MAX 60000000   /* ns for which a torque may be held without a newer sample; a slow bus takes 50 ms */
-#define ETHD__LOOP_HANG 500000000 /* ns: a thread that hasn't turned for so long, and four periods, hangs */
-#define ETHD__LOOP_LEFT (-1)      /* in `stepping`: [main] has given up the thread that steps */
-#define ETHD__LOOP_STEP_MAX 100000000 /* ns: no step may take longer, whatever limits.step_time says */
+#define ETHD__LOOP_HANG 500000000 /* ns: a thread without a cycle for this time, and for four periods, hangs */
+#define ETHD__LOOP_LEFT (-1)      /* in `stepping`: [main] has abandoned the stepping thread */
+#define ETHD__LOOP_STEP_MAX 100000000 /* ns: no step may take longer, for any limits.step_time */
 
 /* A ring of rows on their way from the loop to one reader. The idea: each counter has one writer, and publishing a
-   counter is what hands over a slot. head and tail only grow; a row's slot is its number modulo the size, and head -
-   tail rows wait. The writer fills a slot and then releases head, so a reader that acquires head sees whole rows; the
-   reader copies a row and then releases tail, so the writer that acquires tail overwrites nothing unread. A full ring
-   loses the new row, which the next one counts in `lost`.
+   counter passes a slot to the other side. head and tail only grow; a row's slot is its number modulo the size, and
+   head - tail rows wait. The writer fills a slot and then releases head, so a reader that acquires head sees whole
+   rows; the reader copies a row and then releases tail, so the writer that acquires tail never overwrites an unread
+   row. A full ring loses the new row, which the next one counts in `lost`.
 
-   The controller's events come through a ring of its own. That one can't serve for rows, because it is private to
-   libethd, has a fixed size, and mustn't lose an event: a setup is taken only while it has room. The two rings have no
-   common order: a row's `swaps`, the posts that were taken up to it, says before which row an event "taken" belongs. */
+   The controller's events have their own ring. It can't serve for rows, because it is private to libethd, has a fixed
+   size, and mustn't lose an event: a setup is taken only while it has room. The two rings have no common order: a row's
+   `swaps`, the number of setups taken so far, assigns an event "taken" to its row. */
 typedef struct ethd__loop_ring {
   _Alignas(64) atomic_uint head; /* next to write, [rt] */
   _Alignas(64) atomic_uint tail; /* next to read */
@@ -54,7 +54,7 @@ struct ethd_loop {
   int64_t step;   /* ns: duration of the last step */
   int64_t ramp;   /* armed ticks since the start */
   bool dry;       /* 1: the next step is rehearsed first */
-  int32_t held;   /* ticks since the last one that stepped */
+  int32_t held;   /* ticks since the last step */
   int64_t stale;  /* ticks since the last sample of joints or effector */
   int64_t hold;   /* ticks for which a torque may be held without one */
   bool was_armed;
@@ -81,10 +81,10 @@ struct ethd_loop {
 
   _Alignas(64) atomic_int mode, armed, clear, stop, ended, failed;
   atomic_uint beats;        /* the application's */
-  _Atomic int64_t turned;   /* ns: the loop's thread was alive then */
-  _Atomic int64_t stepping; /* ns: a step runs since then; 0: none does */
-  atomic_int hangs;         /* 1: the loop's thread hasn't turned for ETHD__LOOP_HANG */
-  atomic_int left;          /* ethd_status that join returned when it gave up that thread; 0: it didn't */
+  _Atomic int64_t turned;   /* ns: the last instant at which the loop's thread was alive */
+  _Atomic int64_t stepping; /* ns: start of the running step; 0: none runs */
+  atomic_int hangs;         /* 1: the loop's thread made no cycle for ETHD__LOOP_HANG */
+  atomic_int left;          /* ethd_status of the join that abandoned the thread; 0: none did */
   _Atomic int64_t raised;   /* rows for the next sense */
   ethd__loop_ring rows;
 
@@ -101,8 +101,8 @@ struct ethd_loop {
   int cpu; /* ETHD_CPU_NONE: any */
 };
 
-/* Copies a row. Its type is known here, so no memcpy is called: an application's ThreadSanitizer would watch each call, and
-   a suppressed report takes longer than a tick. [rt] */
+/* Copies a row. Its type is known here, so no memcpy is called: an application's ThreadSanitizer would watch each call,
+   and a suppressed report takes longer than a tick. [rt] */
 static inline void ethd__loop_copy(const ethd_loop *loop, const void *from, void *to) ETHD_RT {
   if (loop->front == &ethd__loop_plane)
     *(ethd_loop_row *)to = *(const ethd_loop_row *)from;
@@ -117,27 +117,27 @@ int64_t ethd__loop_boot(const ethd_loop *loop) ETHD_RT;
 /* Sleeps, ticks and counts until a stop is requested; returns 0, or the error with which the sleep failed. [rt] */
 int ethd__loop_cycle(ethd_loop *loop) ETHD_RT;
 
-/* Makes one turn, which is a sleep and a tick; returns 0, or the error with which the sleep failed. [rt] */
+/* Makes one cycle, a sleep and a tick; returns 0, or the error with which the sleep failed. [rt] */
 int ethd__loop_turn(ethd_loop *loop) ETHD_RT;
 
 /* Notes that a tick was due `ns` ago. [rt] */
 void ethd__loop_late(ethd_loop *loop, int64_t ns) ETHD_RT;
 
-/* Notes by how much the second clock is ahead of the first. [rt] */
+/* Notes the bounds of the second clock's lead over the first. [rt] */
 void ethd__loop_ahead(ethd_loop *loop, int64_t least, int64_t most) ETHD_RT;
 
 /* Adds the rows of the fault table that the loop sees at this tick; once a tick. [rt] */
 void ethd__loop_rows(ethd_loop *loop, ethd__sense_head *sense) ETHD_RT;
 
-/* Writes zero torque, as the last thing that the loop does. [rt] */
+/* Writes zero torque as the loop's last action. [rt] */
 void ethd__loop_rest(ethd_loop *loop) ETHD_RT;
 
-/* Watches the loop's thread, which is dead when it hasn't turned for `gap` while the device gets torques: the body of a
-   thread of its own. */
+/* The body of the watching thread: the loop's thread counts as dead if it makes no cycle for `gap` while the device
+   gets torques. */
 void *ethd__loop_watch(void *loop);
 
-/* Does all that may take long, before the device is enabled and any thread runs: initialises Xenomai, locks memory,
-   holds the DMA latency, finds the processor and makes the stack; notes the bits of what the machine refuses. Fails as
+/* Does all slow work, before the device is enabled and any thread runs: initialises Xenomai, locks memory, holds the
+   DMA latency, finds the processor and makes the stack; notes the bits of refusals by the machine. Fails as
    ethd__xenomai_begin does, or with ETHD_E_MEMORY. [main] */
 ETHD_MUST_CHECK ethd_status ethd__loop_ask_machine(ethd_loop *loop, ethd_error *error);
 void ethd__loop_release_machine(ethd_loop *loop);
@@ -152,9 +152,9 @@ uint32_t ethd__loop_units(const ethd_loop *loop);
 ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
                               double max);
 
-/* Initialises Xenomai where that is needed; begins to count switches to secondary mode on a thread; returns how many
-   there were. Refusals are named "xenomai" (the kernel has no Cobalt), "clock" (found: s by which Cobalt's is ahead of
-   Linux's) and "thread". [main] */
+/* Initialises Xenomai where that is needed; begins to count switches to secondary mode on a thread; returns their
+   number. Refusals are named "xenomai" (the kernel has no Cobalt), "clock" (found: lead of Cobalt's over Linux's, s)
+   and "thread". [main] */
 ethd_status ethd__xenomai_begin(ethd_error *error);
 void ethd__xenomai_watch(void); /* on the loop's thread, before the first tick */
 uint64_t ethd__xenomai_relaxes(void);

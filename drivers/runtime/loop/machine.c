@@ -1,4 +1,4 @@
-/* What a realtime thread asks of the machine, and what to say when it isn't granted. */
+/* A realtime thread's requests to the machine, and the messages about refusals. */
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <math.h>
@@ -56,7 +56,7 @@ ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char 
   return status;
 }
 
-/* ---- asking ---- */
+/* ---- requests ---- */
 
 static int first_line(const char *path, char *out, int size) {
   FILE *file = fopen(path, "re");
@@ -89,7 +89,7 @@ static int highest_isolated(void) {
   return highest;
 }
 
-/* The calling thread tries the processor on the loop's behalf, and comes back. */
+/* The calling thread tries the processor for the loop, and returns to its own. */
 static bool may_run_on(int cpu) {
   cpu_set_t before, one;
   CPU_ZERO(&one);
@@ -105,8 +105,8 @@ static bool hold_dma_latency(ethd_loop *l) {
          write(l->dma_latency, &l->def.dma_latency, sizeof l->def.dma_latency) == sizeof l->def.dma_latency;
 }
 
-/* Returns what a thread's stack holds before the thread runs, bytes: its thread-local memory, some kB, but 800 kB where
-   the application is under ThreadSanitizer. glibc knows, by a function without a declaration. */
+/* Returns the used bytes of a thread's stack before it runs: its thread-local memory, some kB, but 800 kB under
+   ThreadSanitizer. A function of glibc without a declaration gives it. */
 static size_t threads_own(void) {
   size_t (*least)(const pthread_attr_t *) = NULL;
   void *found = dlsym(RTLD_DEFAULT, "__pthread_get_minstack");

@@ -1,7 +1,7 @@
 /* Rows of the fault table that the loop itself sees. */
 #include "loop/loop.h"
 
-/* A leaky bucket, because frequent short lateness is as bad as one long one. */
+/* A leaky bucket, because many short delays are as bad as one long delay. */
 #define POUR 10
 #define FULL 50
 #define BRIM 100 /* the bucket holds no more */
@@ -12,7 +12,7 @@ void ethd__loop_late(ethd_loop *l, int64_t ns) {
 }
 
 /* If the second clock is ahead by more than before, the machine was suspended, which the loop's clock doesn't show.
-   A delay between the two readings makes `least` smaller and `most` larger, so that no delay is taken for a
+   A delay between the two readings makes `least` smaller and `most` larger, so that it doesn't count as a
    suspension. */
 void ethd__loop_ahead(ethd_loop *l, int64_t least, int64_t most) {
   int64_t slept = least - l->ahead;

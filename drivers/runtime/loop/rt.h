@@ -17,7 +17,7 @@
 #define __RT(f) f
 #endif
 
-/* The two calls by which the loop sleeps and reads the clock are its own to make. */
+/* Only the loop makes these two calls, to sleep and to read the clock. */
 #if defined(__clang__) && __clang_major__ >= 20
 int clock_gettime(clockid_t clock, struct timespec *out) ETHD_RT;
 int clock_nanosleep(clockid_t clock, int flags, const struct timespec *until, struct timespec *left) ETHD_RT;

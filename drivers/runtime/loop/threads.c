@@ -22,7 +22,7 @@ static void pause_a_little(void) {
   nanosleep(&t, NULL);
 }
 
-/* ---- what runs on them ---- */
+/* ---- bodies of the threads ---- */
 
 static void *run_control(void *loop) {
   ethd_loop *l = loop;
@@ -89,8 +89,8 @@ static int create(pthread_t *thread, int policy, int priority, void *(*run)(void
   return failure;
 }
 
-/* An I/O thread's priority is below the loop's, so that no exchange delays a tick, and above everything ordinary, so
-   that nothing else delays an exchange. */
+/* An I/O thread's priority is below the loop's, so that no exchange delays a tick, and above all ordinary threads, so
+   that they don't delay an exchange. */
 static int start_unit(ethd_loop *l, ethd__unit *unit) {
   int priority = l->def.priority > ETHD_IO_BELOW ? l->def.priority - ETHD_IO_BELOW : 1;
   int failure = create(&unit->thread, SCHED_FIFO, priority, run_unit, unit);
@@ -109,7 +109,7 @@ static int start_units(ethd_loop *l) {
   return failure;
 }
 
-/* The watching thread's priority is above the loop's, where that is granted. */
+/* The watching thread's priority is above the loop's, if the machine allows it. */
 static int start_watch(ethd_loop *l) {
   int failure = create(&l->watch, SCHED_FIFO, l->def.priority < 99 ? l->def.priority + 1 : 99, ethd__loop_watch, l);
   if (failure == EPERM) failure = create(&l->watch, SCHED_OTHER, 0, ethd__loop_watch, l);
@@ -169,7 +169,7 @@ ethd_status ethd_loop_start(ethd_loop *l, ethd_error *error) {
 
 /* ---- while it runs ---- */
 
-/* The loop leaves the device between two ticks; then device and controller are [main]'s. */
+/* The loop releases the device between two ticks; then [main] owns device and controller. */
 static bool take_over(ethd_loop *l) {
   int asked = ETHD__LOOP_ASKED;
   if (!l->has_control || ethd_loop_ended(l)) return l->def.clock != NULL;
@@ -210,14 +210,14 @@ ethd_status ethd_loop_home(ethd_loop *l, const double *q) {
   return status;
 }
 
-/* Gives the thread up, unless its step ends first; the first of the two, the thread or [main], gets the device. */
+/* Abandons the thread, unless its step ends first; the first of the two, the thread or [main], gets the device. */
 static ethd_status give_up_thread(ethd_loop *l) {
   int64_t step = atomic_load_explicit(&l->stepping, memory_order_acquire);
   bool taken = step > 0 && atomic_compare_exchange_strong(&l->stepping, &step, ETHD__LOOP_LEFT);
   return taken ? ETHD_E_LAW : ETHD_E_DEVICE;
 }
 
-/* A thread that hangs can't be ended: it is left to itself, with all that it may touch. */
+/* A hanging thread can't be ended: it is abandoned, with all memory that it may use. */
 static void join_control(ethd_loop *l) {
   while (l->has_watch && !ethd_loop_ended(l) && !ethd_loop_hangs(l, NULL)) pause_a_little();
   if (l->has_watch && !ethd_loop_ended(l)) {
@@ -229,7 +229,7 @@ static void join_control(ethd_loop *l) {
   l->has_control = 0;
 }
 
-/* What a child made by fork has of a loop: memory and descriptors, which go without a word to the device. */
+/* Frees a loop in a forked child: memory and descriptors, without a call to the device. */
 static void drop(ethd_loop *l) {
   l->has_control = l->has_watch = l->locked = false;
   l->units = 0;

@@ -4,19 +4,19 @@
 
 #include "loop/loop.h"
 
-#define SOON 1000000      /* ns until it looks again while a step hangs */
-#define LOOK_MAX 10000000 /* ns between two looks at most */
+#define SOON 1000000      /* ns until the next check while a step hangs */
+#define LOOK_MAX 10000000 /* ns between two checks at most */
 
 typedef struct watch {
   int64_t now, turned, alive; /* ns */
-  int64_t silent;             /* ns that this thread saw pass: while the whole process is stopped, it sees none */
+  int64_t silent;             /* ns without a cycle, counted by this thread: not while the whole process is stopped */
 } watch;
 
-/* Returns ns until the loop's thread counts as dead: the sooner of silence for `gap`, where that is set, and of a step
-   that takes longer than ETHD__LOOP_STEP_MAX. */
+/* Returns ns until the loop's thread counts as dead: after silence for `gap`, if that is set, or after a step longer
+   than ETHD__LOOP_STEP_MAX, whichever comes first. */
 static int64_t left_to_live(const ethd_loop *l, const watch *w) {
   int64_t step = atomic_load_explicit(&l->stepping, memory_order_relaxed);
-  int64_t gap = l->gap > 2 * l->period ? l->gap : 2 * l->period; /* a period lies between two turns */
+  int64_t gap = l->gap > 2 * l->period ? l->gap : 2 * l->period; /* a period lies between two cycles */
   int64_t by_gap = l->gap < INT64_MAX ? w->alive + gap - w->now : INT64_MAX;
   int64_t by_step = step ? step + ETHD__LOOP_STEP_MAX - w->now : INT64_MAX;
   return by_gap < by_step ? by_gap : by_step;
@@ -45,7 +45,7 @@ void *ethd__loop_watch(void *loop) {
   watch w = {.now = ethd__loop_now(l), .alive = ethd__loop_now(l)};
   while (!ethd_loop_ended(l) && !atomic_load_explicit(&l->left, memory_order_relaxed)) {
     int64_t left = left_to_live(l, &w);
-    /* nothing is left once the device is safe: the thread waits for the end of the hanging step */
+    /* after the device is safe, the thread only waits for the end of the hanging step */
     struct timespec t = {.tv_nsec = left < 1 ? SOON : left < LOOK_MAX ? left : LOOK_MAX};
     nanosleep(&t, NULL);
     look(l, &w);

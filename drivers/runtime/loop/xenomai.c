@@ -8,8 +8,8 @@
 #include <signal.h>
 #include <xenomai/init.h>
 
-/* Xenomai gets an argv of our own, because its options are not the program's. Mercury would end the process where
-   memory may not be locked; the loop locks it by itself, and says so if it can't. */
+/* Xenomai gets its own argv, because its options are not the program's. Mercury would end the process if memory can't
+   be locked; the loop locks it itself, and reports a failure. */
 static void initialise(void) {
   static char name[] = "ethd";
 #if defined(__MERCURY__)
@@ -50,7 +50,7 @@ static int64_t core_now(void) {
 }
 
 /* Drivers' threads stamp by Linux's clock, and the loop ticks by the core's. On Dovetail these are one clock, on the
-   I-pipe of Xenomai up to 3.1 they aren't. Returns by how much the core's is ahead, ns; 0: they are one. */
+   I-pipe of Xenomai up to 3.1 they aren't. Returns the lead of the core's clock, ns; 0: they are one. */
 static int64_t clocks_apart(void) {
   int64_t ahead = 0;
   for (int i = 0; i < LOOKS; i++) {

@@ -1,4 +1,4 @@
-/* The columns of both fronts' traces. Sense and trace grow at their ends, so what follows on one that is newer is so, too. */
+/* The columns of both fronts' traces. Sense and trace grow at their ends: all columns after a newer one are newer. */
 #include "ethd/record.h"
 #include "ethd/space.h"
 

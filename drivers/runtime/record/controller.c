@@ -66,12 +66,12 @@ static void space_acknowledge(void *control) { ethd_space_acknowledge(control); 
 static double space_clean_time(void *control) { return ethd_space_clean_time(control); }
 static void space_counters(void *control, ethd_counters *out) { ethd_space_counters(control, out); }
 
-/* Gives the surfaces that the tick looked at; one that is impossible where it refused them. */
+/* Gives the surfaces that the tick used; an impossible one if it refused them. */
 static uint32_t surfaces_of(const ethd_space_trace *row, ethd_surface out[ETHD_NEAR_MAX]) {
   const double nan = (double)NAN;
   out[0] = (ethd_surface){.point = {nan, nan, nan}};
   if (row->near == ETHD_NEAR_REFUSED) return 1;
-  if (row->near < 0 || row->near > ETHD_NEAR_MAX) return 0; /* no controller writes that: the replay differs */
+  if (row->near < 0 || row->near > ETHD_NEAR_MAX) return 0; /* no controller writes this: the replay differs */
   for (int64_t i = 0; i < row->near; i++)
     out[i] = (ethd_surface){.point = ethd_vec3_of(row->near_point + 3 * i),
                             .n = ethd_vec3_of(row->near_n + 3 * i),
@@ -89,7 +89,7 @@ static void space_step(void *control, const void *row, void *trace) {
   (void)ethd_space_step(control, &recorded->sense, near, count, &command, trace);
 }
 
-/* Surfaces that found no room in a row are counted in `overflow`, but can't be shown again. */
+/* Surfaces without room in a row are counted in `overflow`, but can't be replayed. */
 static const ethd__controller space = {.columns = ethd_space_trace_columns,
                                        .row_bytes = sizeof(ethd_space_trace),
                                        .unrepeated = "overflow",

@@ -9,7 +9,7 @@
 typedef struct ethd__controller {
   const ethd_column *columns; /* of a row, which is the front's trace */
   size_t row_bytes;
-  const char *unrepeated; /* the column that doesn't follow from the others; NULL: there is none */
+  const char *unrepeated; /* the column that a replay can't compute; NULL: none */
   ethd_status (*create)(const void *setup, void **out, ethd_error *error);
   void (*destroy)(void *control);
   ethd_status (*post)(void *control, const void *setup, ethd_error *error);

@@ -8,7 +8,7 @@
 
 #define BYTES_MAX ((size_t)1 << 30)
 
-/* Takes the next line off *rest; NULL at the end. */
+/* Cuts the next line off *rest; NULL at the end. */
 static char *cut_line(char **rest) {
   char *line = *rest;
   if (!*line) return NULL;

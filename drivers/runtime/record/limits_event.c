@@ -43,7 +43,7 @@ ethd_status ethd__clock_event(ethd_recording *recording, int64_t instant) {
   struct tm parts;
   clock_gettime(CLOCK_REALTIME, &now);
   int64_t age = ethd__clock_now() - instant, date_ns = now.tv_sec * SECOND + now.tv_nsec;
-  if (age > 0 && age < SECOND) date_ns -= age; /* else the device has a clock of its own */
+  if (age > 0 && age < SECOND) date_ns -= age; /* else the device has its own clock */
   const time_t seconds = (time_t)(date_ns / SECOND);
   if (!gmtime_r(&seconds, &parts) || !strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%S", &parts)) return ETHD_OK;
   snprintf(text, sizeof text, "%" PRId64 " %s.%09" PRId64 "Z", instant, date, date_ns % SECOND);

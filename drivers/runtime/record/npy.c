@@ -18,7 +18,7 @@
 struct ethd_npy {
   int fd;
   size_t row_bytes, header_bytes;
-  size_t shape;   /* where the count is in the header */
+  size_t shape;   /* offset of the count in the header */
   uint64_t count; /* rows in the file */
   size_t waiting; /* rows in the buffer */
   int reason;     /* errno of the write that failed; 0 when none did */
@@ -153,7 +153,7 @@ ethd_status ethd_npy_close(ethd_npy *npy) {
 
 /* ---- reading ---- */
 
-/* Takes memory for the rows after the header, and what is on the disk, have said how many there are. */
+/* Allocates memory for the rows once header and file size agree on their number. */
 static ethd_status read_rows(ethd__npy_reader *reader, char **out, char *message) {
   const size_t n = reader->row_bytes, bytes = reader->shape.count * n;
   const void *row;

@@ -1,5 +1,5 @@
-/* The header of a .npy: NumPy's format 1.0: "\x93NUMPY" 1 0, u16 length, a Python dict padded with spaces and ended by a
-   newline so that data starts at a multiple of 64. */
+/* The header of a .npy: NumPy's format 1.0: "\x93NUMPY" 1 0, u16 length, a Python dict padded with spaces and ended by
+   a newline so that data starts at a multiple of 64. */
 #include <stdio.h>
 #include <string.h>
 
@@ -46,7 +46,7 @@ static bool take(const char **p, const char *end, const char *text, size_t lengt
   return true;
 }
 
-/* Takes the dict up to the count, and notes which of the newer columns it lacks. False: it has other columns. */
+/* Parses the dict up to the count, and notes which of the newer columns it lacks. False: it has other columns. */
 static bool take_dict(const char **p, const char *end, ethd__npy_shape *shape) {
   char text[COLUMN_MAX + 2] = ", ";
   uint64_t newer = 1; /* the bit of the next newer column; 0: none is left */
@@ -65,7 +65,7 @@ static bool take_dict(const char **p, const char *end, ethd__npy_shape *shape) {
   return same && !first && take(p, end, END, sizeof END - 1);
 }
 
-/* Reads "12,), }", spaces and a newline; returns false if there is anything else. */
+/* Reads "12,), }", spaces and a newline; returns false for any other text. */
 static bool read_count(const char *p, const char *end, size_t *count) {
   size_t value = 0, digits = 0;
   for (; p < end && *p >= '0' && *p <= '9' && digits < 18; p++, digits++) value = value * 10 + (size_t)(*p - '0');
@@ -91,7 +91,7 @@ static ethd_status read_header(const char *text, size_t length, const char *path
   return ETHD_OK;
 }
 
-/* Rows after the header's count were being written when the writer ended, so they don't count. */
+/* Rows behind the header's count were incomplete when the writer ended, so they don't count. */
 ethd_status ethd__npy_parse(const char *text, size_t length, const char *path, ethd__npy_shape *shape,
                             char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = read_header(text, length, path, shape, message);

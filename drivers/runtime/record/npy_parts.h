@@ -7,12 +7,12 @@
 #define ETHD__NPY_MAGIC "\x93NUMPY\x01\x00"
 #define ETHD__NPY_PREFIX ((size_t)10) /* bytes before the dict */
 
-/* Where rows are in a file, and which columns they have. */
+/* The position and the columns of the rows in a file. */
 typedef struct ethd__npy_shape {
   const ethd_column *columns; /* the caller's table */
-  size_t data, count;         /* where the first row is, and how many count */
+  size_t data, count;         /* offset of the first row, and number of rows */
   size_t row_bytes;           /* of the file */
-  uint64_t lacks;             /* bit i: the file lacks the table's column i of those that are newer */
+  uint64_t lacks;             /* bit i: the file lacks the i-th newer column of the table */
 } ethd__npy_shape;
 
 /* Writes the dict up to the count, and returns its length; 0: no room. [any] */
@@ -38,8 +38,8 @@ typedef struct ethd__npy_reader {
   const char *path; /* the caller's, which outlives it; NULL: it isn't open */
   int fd;
   ethd__npy_shape shape;
-  size_t row_bytes; /* of a row as it is given */
-  size_t next;      /* how many rows have been given */
+  size_t row_bytes; /* of a returned row */
+  size_t next;      /* number of rows returned so far */
   char *piece, *row;
 } ethd__npy_reader;
 

@@ -8,10 +8,10 @@
 #include "text/error_text.h"
 #include "text/file.h"
 
-#define HEADER_MOST ((size_t)65545) /* bytes of the longest header, with what stands before it */
+#define HEADER_MOST ((size_t)65545) /* bytes of the longest header and its prefix */
 #define PIECE 256u                  /* rows that are read at once */
 
-/* Returns how many bytes from `offset` on are there, up to `most`; fewer with errno 0: the file ends. */
+/* Returns how many bytes were read from `offset` on, up to `most`; fewer with errno 0: the file ends. */
 static size_t read_at(int fd, void *to, size_t most, size_t offset) {
   size_t n = 0;
   ssize_t got = 1;
@@ -65,7 +65,7 @@ bool ethd__npy_lacks(const ethd__npy_shape *shape, const ethd_column *column) {
   return column->newer && shape->lacks & newer;
 }
 
-/* Puts the columns that the file has to their places in a row, in which the others stay 0. */
+/* Copies the file's columns to their offsets in a row; the other columns stay 0. */
 static void widen(ethd__npy_reader *r, const char *from) {
   for (const ethd_column *c = r->shape.columns; c->name; c++) {
     const size_t n = c->count * (size_t)8;

@@ -15,20 +15,20 @@
 #include "text/file.h"
 #include "text/text.h"
 
-#define ROOM 256 /* bytes kept in events.csv for a row about what can't be written */
+#define ROOM 256 /* bytes reserved in events.csv for a row about a failed write */
 
 struct ethd_recording {
   ethd_npy *ticks;
   FILE *events;
   const ethd__controller *front;
-  uint64_t rows; /* that came, whether they are in the file or lost */
+  uint64_t rows; /* all rows so far, those in the file and the lost ones */
   ethd__claim claim;
   char *folder, failure[ETHD_MESSAGE_MAX]; /* "": none */
 };
 
 /* ---- config.ini ---- */
 
-/* Returns what the recording's configuration says for `file` in place of the original's line; NULL: the same. */
+/* Returns the value of `file` in the recording's configuration instead of the original line's; NULL: the same. */
 static const char *own_value(const ethd_config *config, int line) {
   const ethd_ini *ini = &ethd__config_whole(config)->ini;
   uint32_t plugin = 0;
@@ -89,7 +89,7 @@ static ethd_status write_config(const char *folder, const ethd_config *config, c
   return status;
 }
 
-/* Reserves room for the next row of events.csv, in case the disk is full by then, if the file system can do so. */
+/* Reserves room for the next row of events.csv on a full disk, if the file system can do so. */
 static void keep_room(FILE *events) {
   off_t end = ftello(events);
   (void)!fallocate(fileno(events), FALLOC_FL_KEEP_SIZE, end, ROOM);
@@ -104,7 +104,7 @@ static ethd_status open_events(const char *path, ethd_recording *recording, char
   return ethd__no_memory(message, path);
 }
 
-/* The ticks come first: by them a folder is known as a recording, which may be replaced. */
+/* The ticks' file comes first: it marks a folder as a recording, which may be replaced. */
 static ethd_status open_files(const char *folder, ethd_recording *recording, char *message) {
   char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);
   char *events = ethd__path_join(folder, ETHD_RECORDING_EVENTS);
@@ -141,7 +141,7 @@ ethd_status ethd_recording_create(const char *folder, const ethd_config *config,
   return status;
 }
 
-/* ---- what can't be written ---- */
+/* ---- failed writes ---- */
 
 static ethd_status put_event(ethd_recording *recording, uint64_t row, const char *kind, const char *detail) {
   FILE *file = recording->events;
@@ -172,7 +172,7 @@ static ethd_status ticks_failed(ethd_recording *recording) {
   return ethd__recording_fail(recording, ETHD_RECORDING_TICK, ethd__npy_reason(recording->ticks));
 }
 
-/* Writes the ticks out before an event. Events are few, and the ticks after one can't be understood without it. */
+/* Flushes the ticks before an event. Events are few, and the ticks after an event can't be interpreted without it. */
 ethd_status ethd_recording_event(ethd_recording *recording, const char *kind, const char *detail) {
   ethd_status status = ethd_npy_flush(recording->ticks) ? ticks_failed(recording) : ETHD_OK;
   errno = 0;

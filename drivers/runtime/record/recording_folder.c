@@ -19,7 +19,7 @@ static const char *const own[] = {ETHD_RECORDING_TICK,
 
 bool ethd__recording_holds(const char *folder, const char *path) { return ethd__claim_holds(folder, own, path); }
 
-/* Returns true if the configuration was read from what would be overwritten. */
+/* Returns true if the configuration was read from a file that would be overwritten. */
 static bool is_input(const char *folder, const ethd_config *config) {
   const char *scene = ethd__config_whole(config)->scene_path;
   bool held =

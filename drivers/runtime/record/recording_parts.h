@@ -1,4 +1,4 @@
-/* What recording and replaying share. */
+/* The shared parts of recording and replaying. */
 #ifndef ETHD__RECORD_RECORDING_PARTS_H
 #define ETHD__RECORD_RECORDING_PARTS_H
 
@@ -18,7 +18,7 @@ typedef struct ethd__record_event {
 } ethd__record_event;
 
 typedef struct ethd__record_events {
-  char *text; /* what the words point into */
+  char *text; /* the words point into it */
   ethd__record_event *events;
   size_t count;
 } ethd__record_events;

@@ -28,7 +28,7 @@ typedef struct verification {
   double heat[2];              /* of the motors, by the last event of that kind */
   double learned[ETHD_MEMORY]; /* the law's memory, by the last event of that kind */
   void *control;
-  const ethd__record_event *missing; /* the event that says that ticks are missing; NULL: none is */
+  const ethd__record_event *missing; /* the event that reports missing ticks; NULL: none are missing */
   char *message;
 } verification;
 
@@ -179,7 +179,7 @@ static void say_number(char type, const unsigned char *at, char out[32]) {
     snprintf(out, 32, "%" PRId64, integer);
 }
 
-/* Returns true if a replay can tell what the column holds. */
+/* Returns true if a replay can compute the column. */
 static bool is_repeated(const verification *r, const ethd_column *c) {
   return !ethd__npy_lacks(&r->rows.shape, c) && !(r->replayed->unrepeated && !strcmp(r->replayed->unrepeated, c->name));
 }
@@ -200,7 +200,7 @@ static ethd_status compare(const verification *r, size_t row, const void *record
   return ETHD_OK;
 }
 
-/* Judges by the event `end`, which a program that was killed, or whose disk was full, didn't write. */
+/* Judges by the event `end`, which a killed program, or one with a full disk, didn't write. */
 static ethd_status judge_end(const verification *r) {
   const ethd__record_event *last = r->events.count ? &r->events.events[r->events.count - 1] : NULL;
   if (!last || strcmp(last->kind, "end") != 0)
@@ -215,7 +215,7 @@ static ethd_status judge_end(const verification *r) {
                    ethd__s(r->rows.shape.count));
 }
 
-/* Refuses to go on at a tick before which others are missing, with what the controller learned in them. */
+/* Refuses to continue at a tick before which others are missing, since they changed the controller's state. */
 static ethd_status unreplayable(const verification *r, size_t row) {
   return ethd__say(r->message, ETHD_E_UNFINISHED,
                    "%s: %zu of %zu ticks are equal to the bit, the rest can't be replayed: %s (%s:%zu)", r->folder, row,

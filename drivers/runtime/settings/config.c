@@ -64,7 +64,7 @@ static const ethd_ini_key *find_key(const config_reading *r, const char *name) {
   return ethd_ini_find(&r->whole->ini, section, dot + 1);
 }
 
-/* Finds the key to blame. A default fails only because of another key, which the file has. */
+/* Finds the key that causes a failure. A default fails only because of another key of the file. */
 static const ethd_ini_key *find_cause(const config_reading *r, const char *name) {
   static const char *const by[][2] = {
       {"finger.radius", "ring.radius"},        {"finger.radius_max", "ring.radius"},
@@ -92,7 +92,7 @@ static ethd_status check_setup(const config_reading *r) {
   return ethd__say(r->message, status, "%s, by %s.%s = %s", what, cause->section, cause->key, cause->value);
 }
 
-/* Returns the widest range of all transition laws, since any of them may be swapped in. */
+/* Returns the longest range of all transition laws, since a swap may choose any of them. */
 static double widest_range(const ethd_config *c) {
   double range = ethd_setup_range(&c->setup);
   for (const ethd_law *const *law = c->laws; *law; law++) {

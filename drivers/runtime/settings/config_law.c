@@ -52,7 +52,7 @@ static double *values(const void *setup, const ethd_setup_part *part) {
   return (double *)(void *)((char *)setup + part->values);
 }
 
-/* Keeps values that were chosen, in the file or later; values that were the old law's defaults become the new law's. */
+/* Keeps chosen values, from the file or later; the old law's defaults become the new law's. */
 static void keep_common(const ethd_config *config, const ethd__config_front *front, const ethd_setup_part *part,
                         const void *from, void *to) {
   const ethd_ini *ini = &ethd__config_whole(config)->ini;

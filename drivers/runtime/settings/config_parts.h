@@ -1,4 +1,4 @@
-/* The parts of a configuration that only the files of this room need. */
+/* The private parts of a configuration. */
 #ifndef ETHD__SETTINGS_CONFIG_PARTS_H
 #define ETHD__SETTINGS_CONFIG_PARTS_H
 
@@ -19,8 +19,8 @@ static inline const ethd__config *ethd__config_whole(const ethd_config *config) 
 
 /* ---- config_sections.c: one row for each section ---- */
 
-/* Keys that don't hold a number are read before those that do, wherever they are in the file, because the meaning of a
-   number depends on them. */
+/* Keys without a number are read before those with one, at any place in the file, because the meaning of a number
+   depends on them. */
 typedef enum ethd__pass { ETHD__PASS_PLUGINS, ETHD__PASS_CHOICES, ETHD__PASS_PRESET, ETHD__PASS_REST } ethd__pass;
 #define ETHD__PASSES 4
 
@@ -35,7 +35,7 @@ typedef struct ethd__file_key {
    its name. */
 typedef struct ethd__section {
   const char *name;
-  unsigned fronts; /* that have it */
+  unsigned fronts; /* the fronts with this section */
   ethd__file_key keys[2];
 } ethd__section;
 
@@ -50,8 +50,8 @@ bool ethd__config_in_files_only(const ethd__config_front *front, const char *sec
 /* Refuses a key that its section doesn't have under the laws of the setup. */
 ethd_status ethd__config_unknown(const ethd__key *key, const ethd__config_front *front, const void *setup);
 
-/* Refuses a section that no configuration of this front has, even if it is without keys. `space`: the section that
-   makes it one of space, NULL: none does. */
+/* Refuses a section that no configuration of this front has, even without keys. `space`: the file's section [space],
+   NULL: it has none. */
 ethd_status ethd__config_section_known(const ethd_ini_section *section, const ethd_ini_section *space, const char *file,
                                        char message[ETHD_MESSAGE_MAX]);
 
@@ -84,12 +84,11 @@ ethd_status ethd__config_preset(ethd__config *config, const ethd__key *key);
 
 #define ETHD__PATIENCE 5 /* s: no plugin needs longer to be loaded, and no law to check its parameters */
 
-/* A hook for a program that wants to end a plugin that doesn't return; NULL: there is none. It is called with `what`,
-   the plugin's file or what it does, and for how many seconds that may run, before code of a plugin runs, and with NULL
-   after that. [main] */
+/* A hook for a program that ends plugins which don't return; NULL: none. Before code of a plugin runs it is called with
+   `what`, the plugin's file or action, and the seconds that it may take; after that with NULL. [main] */
 extern void (*ethd__foreign_code)(const char *what, unsigned patience);
 
-/* Tells the hook that code of the configuration's plugins runs from here on, or no longer (NULL); nothing without
+/* Calls the hook: code of the configuration's plugins runs from here on, or no longer (NULL). Does nothing without
    plugins. */
 void ethd__config_foreign(const ethd_config *config, const char *what);
 

@@ -29,7 +29,7 @@ static bool own_header(ElfW(Ehdr) * out) {
 
 static bool for_this_machine(const ElfW(Ehdr) * h) {
   ElfW(Ehdr) own;
-  if (!own_header(&own)) return true; /* the loader decides */
+  if (!own_header(&own)) return true; /* then the loader decides */
   return h->e_ident[EI_CLASS] == own.e_ident[EI_CLASS] && h->e_ident[EI_DATA] == own.e_ident[EI_DATA] &&
          h->e_machine == own.e_machine;
 }
@@ -136,12 +136,12 @@ static ethd_status open_plugin(ethd_config *config, const char *path, const ethd
   ethd_status status = ethd__plugin_file_check(path, what);
   if (status) return ethd__key_refuse(key, status, "%s", what);
   foreign(path);
-  void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL); /* stays, so that a refused one can be asked what is wrong */
+  void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL); /* stays open, to examine a refused one */
   const char *why = handle ? NULL : dlerror();
   status = handle ? ethd_plugin_open(path, &entry, &error)
                   : ethd__say(what, ETHD_E_LOAD, "%s", why ? why : ethd_status_sentence(ETHD_E_LOAD));
   if (handle && status) ethd__plugin_fault(handle, &error, what);
-  if (handle) dlclose(handle); /* ethd_plugin_open keeps one that it takes */
+  if (handle) dlclose(handle); /* ethd_plugin_open keeps an accepted one open */
   foreign(NULL);
   if (!status) return add_laws(config, entry, key);
   return handle ? ethd__key_refuse(key, status, "%s: %s", key->value, what) : ethd__key_refuse(key, status, "%s", what);

@@ -10,8 +10,8 @@
 
 /* ---- keys that only files have ---- */
 
-/* Returns the whole path of a driver's file, so that it means the same in a recording's folder; NULL: no memory. If
-   there is no such file, opening it says so. */
+/* Returns the absolute path of a driver's file, so that it is valid in a recording's folder too; NULL: no memory. A
+   missing file is reported when it is opened. */
 static char *whole_path(const ethd__config *c, const char *name, size_t length) {
   char *relative = strndup(name, length), *joined = relative ? ethd__path_join(c->config.folder, relative) : NULL;
   char *path = joined ? realpath(joined, NULL) : NULL;

@@ -63,7 +63,7 @@ static ethd_status refuse(const ethd_material *m, uint32_t i, ethd_status status
   return status;
 }
 
-/* Makes the contact law's parameters on one material: the setup's, replaced by the material's own where it has some. */
+/* Makes the contact law's parameters for one material: the setup's, replaced by those that the material gives. */
 static ethd_status take_material(const ethd_law *law, const ethd_material *m, double *p, ethd_error *error) {
   for (uint32_t i = 0; i < m->count; i++) {
     int k = ethd_params_find(law->params, law->param_count, m->values[i].name);
@@ -75,7 +75,7 @@ static ethd_status take_material(const ethd_law *law, const ethd_material *m, do
   return ETHD_OK;
 }
 
-/* Calls a number as a configuration does. */
+/* Names a number as in a configuration. */
 static ethd_status check_numbers(const ethd_space_setup *s, ethd_error *error) {
   char name[sizeof error->name];
   const ethd_status status = ethd_space_check(s, error);

@@ -1,4 +1,4 @@
-/* What a configuration configures: the front of the plane or that of space, behind one set of functions. */
+/* The front of a configuration, of the plane or of space, behind one set of functions. */
 #ifndef ETHD__SETTINGS_FRONT_H
 #define ETHD__SETTINGS_FRONT_H
 

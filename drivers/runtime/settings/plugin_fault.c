@@ -11,7 +11,7 @@
 
 #define WORD_MAX 31
 
-/* Quotes what a plugin says, which may be NULL or never end. */
+/* Quotes a plugin's text, which may be NULL or unterminated. */
 static const char *quoted(const char *text, char out[ETHD_QUOTE_MAX]) {
   return text ? ethd__quote(text, strnlen(text, ETHD_QUOTE_MAX), out) : "NULL";
 }
@@ -53,7 +53,7 @@ ethd_status ethd__table_fault(const ethd_param *params, uint32_t count, char wha
   if (count > ETHD_PARAMS_MAX)
     return ethd__say(what, ETHD_E_TABLE, "%u rows, at most %d are allowed", count, ETHD_PARAMS_MAX);
   if (count && !params) return ethd__say(what, ETHD_E_TABLE, "NULL, but %u rows are promised", count);
-  for (uint32_t i = 0; i < count; i++) { /* up to the first row with which the table is refused */
+  for (uint32_t i = 0; i < count; i++) { /* up to the first refused row */
     if (!ethd_params_check_table(params, i + 1, NULL)) continue;
     row_fault(params, i, what);
     return ETHD_E_TABLE;
@@ -129,7 +129,7 @@ static void entry_fault(const ethd_plugin_entry *entry, const ethd_error *error,
       law_fault(law, &wrong, what);
     return;
   }
-  ethd_error_text(NULL, error, what); /* a law twice: its name and that sentence say it all */
+  ethd_error_text(NULL, error, what); /* a duplicate law: its name and the sentence suffice */
 }
 
 void ethd__plugin_fault(void *handle, const ethd_error *error, char what[ETHD_MESSAGE_MAX]) {

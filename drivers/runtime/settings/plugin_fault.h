@@ -1,5 +1,5 @@
-/* Says what is wrong with a table of parameters or with a plugin that the library refused: which law, which row, what
-   was found, and what to write instead. The library itself gives a status and a name. All [main]. */
+/* Explains why a table of parameters or a plugin was refused: the law, the row, the found value, and the allowed one.
+   The library itself gives only a status and a name. All [main]. */
 #ifndef ETHD__SETTINGS_PLUGIN_FAULT_H
 #define ETHD__SETTINGS_PLUGIN_FAULT_H
 

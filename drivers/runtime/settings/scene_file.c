@@ -20,7 +20,7 @@ typedef struct shape_words {
   const char *names[8], *forms[8]; /* NULL ends the names */
 } shape_words;
 
-/* Says what a line with the wrong count of numbers should be; the error's name ends in the shape's name. */
+/* Gives the right form of a line with a wrong count of numbers; the error's name ends in the shape's name. */
 static void say_form(const shape_words *w, const ethd_error *error, const char *plain, char message[ETHD_MESSAGE_MAX]) {
   const char *form = "", *name = "SHAPE NUMBERS [material=NAME] or material NAME [KEY=NUMBER...]";
   for (int i = 0; w->names[i] && isfinite(error->found); i++)
@@ -33,7 +33,7 @@ static bool is_called(const char *path, const char *end) {
   return n > m && !strcasecmp(path + n - m, end);
 }
 
-/* Says what to do with a drawing in the place of a scene; false: it is none. */
+/* Gives the remedy for a drawing instead of a scene; false: it is no drawing. */
 static bool say_drawing(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]) {
   if (!is_called(path, ".dxf") && !is_called(path, ".svg") && error->name[0] != '<') return false;
   ethd__say(message, error->status,

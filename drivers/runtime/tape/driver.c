@@ -1,19 +1,19 @@
-/* A recorded session as a device: read gives the samples as they were, and write compares the commands with those
-   that were recorded. So the same programs can run a session again without its hardware.
+/* A recorded session as a device: read gives the recorded samples, and write compares the commands with the recorded
+   ones. So the same programs can run a session again without its hardware.
 
        [device]
        driver = replay
        folder = session1          written by ethd-run --record
 
-   The torque of each tick must be equal to the bit. While a soft start lets a share of it through, both joints must
-   have the same share, and it must rise. Differences are counted and make stop return ETHD_E_DIFFERS. A run in real
-   time that is late anywhere has other periods and so other commands; on a virtual clock every difference is a real
-   one. After the last tick the device can't be read.
+   The torque of each tick must be equal to the bit. During a soft start both joints must have the same share of it, and
+   this share must rise. Differences are counted and make stop return ETHD_E_DIFFERS. A late tick in real time changes
+   the periods and thus the commands; on a virtual clock every difference is a real one. After the last tick the device
+   can't be read.
 
-   A device gives samples and takes torques, but a program posts the setups. So what was commanded while the session ran
-   (transition, set, ack, enable) must be commanded again at the same instants, for instance by the same lines on the
-   standard input of ethd-run --virtual; what is left out shows as a difference. ethd-replay --verify takes the commands
-   from the recording itself. */
+   A device gives samples and takes torques, but a program posts the setups. So the commands of the session (transition,
+   set, ack, enable) must be given again at the same instants, for instance by the same lines on the standard input of
+   ethd-run --virtual; a missing command shows as a difference. ethd-replay --verify takes the commands from the
+   recording itself. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -28,12 +28,12 @@
 typedef struct replay {
   ethd__tape tape;
   size_t next;     /* the row that read gives next */
-  size_t answered; /* rows whose command has come; the safe command at the end isn't one of them */
+  size_t answered; /* rows whose command has come, without the safe command at the end */
   int64_t waits;   /* periods without a sample */
-  double share;    /* of the recorded torque that the last command let through */
+  double share;    /* of the recorded torque in the last command */
   uint64_t compared, different;
   double first; /* the first row that differs, -1: none */
-  bool runs;    /* it plays; a start after a fault doesn't begin again */
+  bool runs;    /* the replay runs; a start after a fault doesn't begin again */
   char remark[288];
 } replay;
 
@@ -86,7 +86,7 @@ static ethd_status replay_start(void *device) {
 
 /* ---- [rt] ---- */
 
-/* Plays the recording; the periods that were missed before a sample give none. */
+/* Replays the recording; the missed periods before a sample give no sample. */
 static ethd_status replay_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
   replay *r = device;
   (void)now_ns;
@@ -108,7 +108,7 @@ static bool same_share(const double torque[2], const double recorded[2], double 
   return true;
 }
 
-/* Returns true if a command is the row's; *share is how much of the recorded torque it lets through. */
+/* Returns true if a command is the row's; *share is its share of the recorded torque. */
 static bool is_same(const replay *r, const ethd_trace *row, const ethd_command *c, double *share) {
   int big = fabs(row->tau[1]) > fabs(row->tau[0]);
   *share = r->share;
@@ -135,7 +135,7 @@ static ethd_status replay_write(void *device, int64_t now_ns, const ethd_command
   return ETHD_OK;
 }
 
-/* A recording moves nothing. */
+/* A recording has no motors. */
 static void replay_safe(void *device) ETHD_RT { (void)device; }
 
 /* ---- [main] ---- */
@@ -185,5 +185,5 @@ const ethd_driver ethd_driver_replay = {
     .dynamics = replay_dynamics,
     .figures = replay_figures,
     .remark = replay_remark,
-    .prepare = replay_open, /* it touches nothing */
+    .prepare = replay_open, /* it touches no device */
 };

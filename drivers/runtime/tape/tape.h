@@ -1,4 +1,4 @@
-/* A recording as a device plays it: the samples, the torques that answered them, and the device's limits. */
+/* A recording for a replaying device: the samples, their torques, and the device's limits. */
 #ifndef ETHD__TAPE_TAPE_H
 #define ETHD__TAPE_TAPE_H
 
@@ -7,8 +7,8 @@
 typedef struct ethd__tape {
   ethd_trace *rows;
   size_t count;
-  size_t changed;   /* the first row after a command that changed something; equal to count: there was none */
-  char change[128]; /* that command as in events.csv: "transition smooth" */
+  size_t changed;   /* the first row after a command that changed the setup or state; count: there was none */
+  char change[128]; /* that command in the form of events.csv: "transition smooth" */
   ethd_limits limits;
   ethd_dynamics dynamics;
 } ethd__tape;
