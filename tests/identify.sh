@@ -34,7 +34,7 @@ grep -q 'pad_stiffness' said && ! grep -q 'NOT EXPLAINED' said || fail "what is 
 awk '$1 == "mass_x" && ($3 < 0.1138 || $3 > 0.1208) || $1 == "mass_y" && ($3 < 0.2425 || $3 > 0.2575) ||
   $1 == "friction" && ($3 < 0.34 || $3 > 0.46) || $1 == "delay" && ($3 < 0.041e-3 || $3 > 0.101e-3) ||
   $1 == "stiffness" && $3 != "inf" { print "FAILED n.plant: " $0; bad = 1 } END { exit bad }' n.plant || failed=1
-grep -q '^hand_damping .*not seen, kept as in q$' n.plant || fail "what isn't seen isn't said"
+grep -q '^hand_damping .*not determined, kept as in q$' n.plant || fail "what isn't seen isn't said"
 
 # The same for an elastic arm, whose transmission it tells from a rigid one.
 printf '[device]\nplant = p\n' >p.ini

@@ -53,7 +53,7 @@ done
 { cat "$folder/device.ini"; echo 'clean_time = 0.5'; } >"$folder/clean.ini"
 printf 'wait 0.1\nset limits.speed 0.001\nwait 0.3\nset limits.speed 5\nwait 0.2\nack\nwait 0.4\nack\nenable\nstop\n' |
   "$run" --virtual --duration 9 --config "$folder/clean.ini" --record "$folder/clean" >"$folder/clean.out" 2>&1 || fail "clean time: exit $?"
-says "$folder/clean.out" '^error: nothing has gone wrong for 0.[0-4][0-9]* s, 0.5 s are required$' '^ok: acknowledged; ' '^ok: enabled$'
+says "$folder/clean.out" '^error: no fault for 0.[0-4][0-9]* s, 0.5 s are required$' '^ok: acknowledged; ' '^ok: enabled$'
 replays "$folder/clean"
 
 # an enabling keeps the motors' heat, and replays
@@ -135,7 +135,7 @@ p.stdin.write("status\n"); p.stdin.flush()
 assert p.stdout.readline().startswith("ok: t ")
 for impatience in range(2): p.send_signal(getattr(signal, "SIG" + sys.argv[1])); time.sleep(0.001)
 out = p.communicate()[0]
-assert p.returncode == 0 and "1 x the application is gone or told to end" in out, (p.returncode, out)' $signal "$run" --record "$folder/$signal" || fail "SIG$signal"
+assert p.returncode == 0 and "1 x the application has ended or was told to end" in out, (p.returncode, out)' $signal "$run" --record "$folder/$signal" || fail "SIG$signal"
   replays "$folder/$signal"
 done
 mkdir "$folder/hosts"

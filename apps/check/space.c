@@ -36,9 +36,8 @@ int ethd__report_space(const ethd_space_setup *s) {
   static const double speeds[] = {0.2, 0.4};
   const reaction r = reaction_of(s);
   int exceeded = 0;
-  printf(
-      "reaction distance        v t_d + v^2/(2a): by so much the finger comes closer until the effector stands at the "
-      "wall\n");
+  printf("reaction distance        v t_d + v^2/(2a): the finger comes closer by this until the effector stands at the "
+         "wall\n");
   printf("  t_d                    %.4g ms: delay %s, and the period %.4g ms\n", 1e3 * r.late,
          isnan(s->ability.delay) ? "not known (0; [ability] delay gives it)" : "of [ability]", 1e3 * s->period);
   if (isnan(r.a)) {

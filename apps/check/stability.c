@@ -88,7 +88,7 @@ static void say_held(const looked_at *l) {
   if (isnan(hold.held)) return;
   printf("  friction             ");
   if (!isfinite(hold.held)) {
-    printf("makes up for it: %.3g Ns/m are needed, the device has %.3g\n", hold.needed, l->device->viscous);
+    printf("compensates this: %.3g Ns/m are needed, the device has %.3g\n", hold.needed, l->device->viscous);
     return;
   }
   printf("stops swings slower than %.3g mm/s at the motors, no faster ones", 1e3 * hold.held);

@@ -81,8 +81,8 @@ static int looks_ahead(const ethd__subject *s, int axis) {
     double v = speeds[i], needed = v * v / (2 * ethd__stop_deceleration(&stop));
     double asked =
         fmax(setup->transition->range(setup->transition_p, v), setup->ring_radius - setup->finger_radius_max);
-    printf("  looks ahead, %c         at %.1f m/s: asked %.3g mm before the wall, v^2/(2a) = %.3g mm: %s\n", 'x' + axis,
-           v, 1e3 * asked, 1e3 * needed, asked > needed ? "in time" : "TOO LATE, raise transition.range");
+    printf("  looks ahead, %c         at %.1f m/s: begins %.3g mm before the wall, v^2/(2a) = %.3g mm: %s\n",
+           'x' + axis, v, 1e3 * asked, 1e3 * needed, asked > needed ? "in time" : "TOO LATE, raise transition.range");
     short_of += !(asked > needed);
   }
   return short_of;

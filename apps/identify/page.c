@@ -62,9 +62,9 @@ static void tell(const ethd__finding *f, const ethd__key_row *row, char *out, si
              b == &f->sensing.latency ? " (by the ticks with which readings came)" : " (95 %)");
   else if (is_count(row))
     snprintf(out, room, "%s, %s", strchr(unit, '|') ? "" : unit,
-             f->sensing.count > 0 ? "read off the angles" : "the angles lie on no lattice");
+             f->sensing.count > 0 ? "found from the angles" : "the angles have no common step");
   else
-    snprintf(out, room, "%s, not seen, kept as in %s", strchr(unit, '|') ? "" : unit, f->base);
+    snprintf(out, room, "%s, not determined, kept as in %s", strchr(unit, '|') ? "" : unit, f->base);
 }
 
 /* ---- the page ---- */
@@ -88,7 +88,7 @@ static bool is_kept(const ethd__finding *f, const ethd__key_row *row) {
 
 static void print_kept(FILE *out, const ethd__finding *f) {
   const char *section = "";
-  fprintf(out, "\nnot seen, kept as in %s:", f->base);
+  fprintf(out, "\nnot determined, kept as in %s:", f->base);
   for (size_t i = 0; i < ethd__plant_row_count; i++) {
     const ethd__key_row *row = &ethd__plant_rows[i];
     if (!is_kept(f, row)) continue;

@@ -91,7 +91,7 @@ static void ack(ethd__session *s, ethd__commands *c, char *rest) {
   }
   double needed, clean = ethd__session_clean_time(s, &needed);
   if (clean < needed * (1 - 1e-9)) {
-    answer("error: nothing has gone wrong for %.3f s, %g s are required", clean, needed);
+    answer("error: no fault for %.3f s, %g s are required", clean, needed);
     return;
   }
   if (!ethd__session_acknowledge(s))

@@ -13,7 +13,7 @@
 static const char doc[] =
     "Finds gains for a device that a plant file describes.\v"
     "Tries gains of tracking, contact and transition and the filters' cut-offs, in ranges about the configuration's "
-    "values. The benefit of each:\n\n" ETHD_TUNE_KNOWN(
+    "values. The benefit and cost of larger values:\n\n" ETHD_TUNE_KNOWN(
         BUYS) "\nPoints that don't keep the margins in every loop, along both axes and with every hand, are left out. "
               "The others are tapped on the simulated device, in four rounds of ever fewer points. It prints the "
               "Pareto front of tracking, braking, wall and calm, and chooses the point with the least weighted sum of "

@@ -7,8 +7,8 @@
 
    Damped least squares divide by s^2 + lambda^2 (Nakamura and Hanafusa 1986), here with the damping of each direction
    by its own singular value, lambda^2 = singular^2 - s^2 below `singular` (numerical filtering, Maciejewski and Klein
-   1988; Chiaverini 1997). So directions in which the arm can move well are exact, whatever the others; a direction in
-   which an arm of few joints can't move gets no motion; the gain is continuous, and at most 1 / singular.
+   1988; Chiaverini 1997). So directions in which the arm can move well are exact, independent of the others; a
+   direction in which an arm of few joints can't move gets no motion; the gain is continuous, and at most 1 / singular.
 
    The directions are found by one-sided Jacobi rotations of the rows (Hestenes 1958), which find small singular values
    to their last digits. At most ETHD__INVERSE_SWEEPS sweeps; four or five are usual. All [any, rt-safe]. */

@@ -221,7 +221,7 @@ typedef struct ethd_filter_reading {
   double age;        /* s from its stamp to now */
   double noise;      /* sd of x in each axis, m, up to ETHD_FILTER_NOISE_MAX; 0: the filter's parameter */
   double v_noise;    /* sd of v in each axis, m/s, up to ETHD_FILTER_V_NOISE_MAX; 0: v wasn't measured */
-  bool extrapolated; /* the tracker has extrapolated x and v to now: they count as of now, whatever their age */
+  bool extrapolated; /* the tracker has extrapolated x and v to now: they count as of now, at any age */
 } ethd_filter_reading;
 
 /* Starts the filter at x, m, with velocity v, m/s, as ethd_filter_start does. [rt] */

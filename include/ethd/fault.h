@@ -73,14 +73,14 @@ typedef enum ethd_reaction {
   X(24, SPEED, STOP, STOP, "1 tick + speed lag", "the ring is faster than its limit")                     \
   X(25, WORKSPACE, DEGRADE, STOP, "1 tick", "the ring is out of its workspace")                           \
   X(26, HEAT, DEGRADE, ZERO, "model", "a motor is too hot")                                               \
-  X(27, ENERGY, DEGRADE, STOP, "50 ms", "a contact gives energy away and goes on after damping")          \
+  X(27, ENERGY, DEGRADE, STOP, "50 ms", "a contact releases energy, and damping doesn't stop it")         \
   X(28, BUS_VOLTAGE, ZERO, ZERO, "1 exchange x every", "the drive's supply is out of its range")          \
   X(29, BUDGET, ZERO, ZERO, "1 tick", "a step ran over its time budget")                                  \
   X(30, PLUGIN, REFUSE, REFUSE, "load", "a plugin of another ABI, or with a bad table")                   \
   X(31, CONFIGURATION, REFUSE, REFUSE, "start", "an error in the configuration")                          \
   X(32, RECORDER, COUNTED, COUNTED, "1 tick", "the recorder lost rows")                                   \
   X(33, EMERGENCY_STOP, ZERO, ZERO, "1 tick", "the emergency stop was pressed")                           \
-  X(34, APPLICATION, STOP, STOP, "100 ms", "the application is gone or told to end")                      \
+  X(34, APPLICATION, STOP, STOP, "100 ms", "the application has ended or was told to end")                \
   X(35, CLOCK, COUNTED, STOP, "1 tick", "the clock jumped by more than 5 ms")                             \
   X(36, SET_POINT, ZERO, ZERO, "the sequence", "the drive still holds an old set-point")                  \
   X(37, INPUT, ZERO, ZERO, "same tick", "a measurement isn't a possible number")                          \

@@ -202,7 +202,7 @@ typedef struct ethd_transition_law {
 #define ETHD_CONTACT_LAW_MIN (offsetof(ethd_contact_law, step) + sizeof(void (*)(void)))
 #define ETHD_TRANSITION_LAW_MIN (offsetof(ethd_transition_law, step) + sizeof(void (*)(void)))
 
-/* True if a transition law, of whatever size, has this optional function. [any, rt-safe] */
+/* True if a transition law, of any size, has this optional function. [any, rt-safe] */
 #define ETHD_LAW_HAS(law_, field) \
   ((law_)->law.size >= offsetof(ethd_transition_law, field) + sizeof((law_)->field) && (law_)->field)
 

@@ -34,7 +34,7 @@ typedef struct ethd_method {
 } ethd_method;
 
 /* Checks a table. It has at most ETHD_PARAMS_MAX rows; names are unique and of 1 to 31 characters a-z 0-9 _ ; units and
-   briefs are 1 to ETHD_BRIEF_MAX printable ASCII characters; min <= def <= max, min is finite, nothing is NaN; the
+   briefs are 1 to ETHD_BRIEF_MAX printable ASCII characters; min <= def <= max, min is finite, none is NaN; the
    choice of a word has min 0, max one less than its words, and a whole default. Else ETHD_E_TABLE with the offending
    name. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_params_check_table(const ethd_param *params, uint32_t count,

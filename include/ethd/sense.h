@@ -66,7 +66,7 @@ enum {
   X(int64_t, fault, 1, "1", "0, or the latched ethd_fault")                        \
   X(int64_t, guard, 1, "1", "bits: what the guard did")                            \
   X(int64_t, swap, 1, "1", "1: a posted setup was taken at this tick")             \
-  X(int64_t, queried, 1, "1", "1: the scene was asked")                            \
+  X(int64_t, queried, 1, "1", "1: the scene was queried")                          \
   X(int64_t, contacts, 1, "1", "contacts that count")                              \
   X(int64_t, overflow, 1, "1", "contacts that found no room")                      \
   X(int64_t, object, 1, "1", "object of the deepest contact, -1 none")             \

@@ -72,7 +72,7 @@ enum {
   X(double, reading_noise, 1, "m", "sd of the reading, each axis; 0: as the filter's noise says")  \
   X(double, reading_v_noise, 1, "m/s", "sd of its velocity, each axis")                            \
   X(double, ability, 6, "m/s, m/s2, s, kg, N, N", "along the nearest surface's n; NaN: not known") \
-  X(double, commanded, 3, "N, m/s", "what was really commanded since the last step")
+  X(double, commanded, 3, "N, m/s", "force or velocity really commanded since the last step")
 
 #define ETHD_NEAR_MAX 16       /* surfaces within range that a tick uses, the deepest */
 #define ETHD_NEAR_REFUSED (-1) /* `near` of a tick that refused its surfaces (row INPUT) */
@@ -98,7 +98,7 @@ enum {
   X(double, speed, 1, "m/s", "along n in R_0 to which the deepest contact's ruling bounds, inf: none") \
   X(double, asked, 3, "N, m/s", "command before the guard")                                            \
   X(double, command, 3, "N, m/s", "command")                                                           \
-  X(double, facing, 3, "1", "normal that the plate is told to face")                                   \
+  X(double, facing, 3, "1", "commanded normal of the plate")                                           \
   X(double, learnt, 4, "1", "the transition law's memory, where it looks ahead")                       \
   X(int64_t, near, 1, "1", "surfaces within range, ETHD_NEAR_REFUSED: refused")                        \
   X(double, near_point, 48, "m", "their points, the deepest first")                                    \
@@ -156,7 +156,7 @@ typedef struct ethd_space_command {
   X(reach_y, "m", -1e6, 1e6, 0, "")                                                                             \
   X(reach_z, "m", -1e6, 1e6, 0, "")                                                                             \
   X(reach, "m", 0, INFINITY, INFINITY, "its radius")                                                            \
-  X(energy, "J", 1e-9, INFINITY, INFINITY, "that a contact may give away before it is damped")                  \
+  X(energy, "J", 1e-9, INFINITY, INFINITY, "energy that a contact may release before it is damped")             \
   X(step_time, "s", 1e-9, INFINITY, INFINITY, "time budget of one step")                                        \
   X(gap, "s", 1e-9, INFINITY, INFINITY, "longest time between two steps, by periods and by stamps")             \
   X(finger_age, "s", 1e-4, INFINITY, INFINITY, "age of the finger's reading at which tracking fades out")       \

@@ -1,4 +1,4 @@
-/* Bounds of each joint; the derivation is in ethd/guard.h. */
+/* Bounds of each joint; ethd/guard.h has the derivation. */
 #include <math.h>
 #include <stdbool.h>
 

@@ -22,7 +22,7 @@ static ethd_status step(const double *p, void *block, double gap, double speed, 
 }
 
 const ethd_contact_law ethd_contact_kelvin_voigt = {
-    .law = {sizeof(ethd_contact_law), ETHD_ABI, ETHD_CONTACT, 0, "kelvin-voigt", "spring, and a damper on the way in",
+    .law = {sizeof(ethd_contact_law), ETHD_ABI, ETHD_CONTACT, 0, "kelvin-voigt", "spring, and a damper while entering",
             params, COUNT, NULL, NULL},
     .step = step,
     .gains = &(const ethd_gains){"k_e", "b_e"},

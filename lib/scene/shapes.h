@@ -22,7 +22,7 @@ typedef struct ethd__shape {
 
   /* The following fields belong to closed forms. `kept` numbers are the given ones and those that `keep` adds. */
 
-  /* Checks what the range of one number can't express; NULL: there is nothing to check. [main] */
+  /* Checks relations that the range of one number can't express; NULL: there are none. [main] */
   ethd_status (*check)(const ethd_object_def *def, ethd_error *error);
   /* Converts a copy of the given numbers into the kept ones; NULL: the copy is kept as it is. [main] */
   void (*keep)(double *kept);

@@ -62,7 +62,7 @@ static bool is_inside(const ethd__strip *s, const ethd__chain *c, const faces *f
 
 /* ---- the walk ---- */
 
-/* Keeps edge k if it is the nearest so far; if faces are asked for, its face counts in any case. */
+/* Keeps edge k if it is the nearest so far; if faces are requested, its face counts in any case. */
 ETHD__INLINE void take(const ethd__chain *c, uint32_t k, ethd_vec x, faces *f, ethd__nearest_edge *best) {
   ethd__beside s = ethd__beside_edge(ethd__chain_point(c, k), ethd__chain_point(c, k + (size_t)1), x);
   if (s.squared < best->squared || (s.squared == best->squared && k < best->edge)) {

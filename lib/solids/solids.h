@@ -21,7 +21,7 @@ typedef struct ethd__solid_shape {
   ethd__form form;
   size_t kept; /* kept numbers of one solid */
 
-  /* Checks what the range of one number can't express; NULL: there is nothing to check. The error has no line. [main] */
+  /* Checks relations that the range of one number can't express; NULL: there are none. The error has no line. [main] */
   ethd_status (*check)(const double *given, ethd_error *error);
   /* Writes the kept numbers. [main] */
   void (*keep)(const double *given, size_t count, double *kept);

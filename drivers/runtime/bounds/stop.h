@@ -19,7 +19,7 @@ typedef struct ethd__bounds_stop {
 
 double ethd__stop_deceleration(const ethd__bounds_stop *stop);
 
-/* Returns the steady lag, m: (f_c + b_v v)/K_x, and what the estimate's delay adds. */
+/* Returns the steady lag, m: (f_c + b_v v)/K_x, plus the part of the estimate's delay. */
 double ethd__stop_lag(const ethd__bounds_stop *stop, double speed);
 
 /* Returns the margin gap - lag - v^2/(2a), m. If it is >= 0, the ring stands still when the finger touches it. */

@@ -75,7 +75,7 @@ double ethd__conform_rig_least(const ethd__conform_rig *r, double window);
 double ethd__conform_rig_spacing(const ethd__conform_rig *r);
 
 /* Returns the mean acceleration of a joint over two windows of `window` s, by the instants of its samples, rad/s^2.
-   With `write` 0 nothing is written meanwhile. */
+   With `write` 0 it writes no command meanwhile. */
 double ethd__conform_rig_acceleration(ethd__conform_rig *r, int joint, double torque, int write, double window);
 
 #endif

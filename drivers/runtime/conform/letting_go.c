@@ -65,7 +65,7 @@ ethd_verdict ethd__conform_watchdog(const ethd_conform_def *def, ethd_conform_an
 ethd_verdict ethd__conform_silence(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
   if (def->device->is_virtual)
-    return ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "a virtual clock has no silence");
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "not possible on a virtual clock");
   if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
   if (!r.units) {
     ethd__conform_rig_end(&r);

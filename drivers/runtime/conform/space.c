@@ -64,7 +64,7 @@ static void tick_space(space_run *s, const ethd_vec3 *command) {
   s->stale += status > 0;
   if (status == ETHD_OK) note_sample(s, &now);
   if (!command) return;
-  if (s->sense.have & ETHD_SPACE_HAVE_NORMAL) memcpy(c.normal, s->sense.normal, sizeof c.normal); /* it turns nothing */
+  if (s->sense.have & ETHD_SPACE_HAVE_NORMAL) memcpy(c.normal, s->sense.normal, sizeof c.normal); /* no rotation */
   ethd_vec3_put(*command, c.value);
   s->written = *command;
   begin = ethd__clock_now();

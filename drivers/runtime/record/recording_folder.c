@@ -6,7 +6,7 @@
 #include "text/file.h"
 #include "text/text.h"
 
-/* The files of a recording and those that programs put beside it. */
+/* The files of a recording, and those that programs add to its folder. */
 static const char *const own[] = {ETHD_RECORDING_TICK,
                                   ETHD_RECORDING_CONFIG,
                                   ETHD_RECORDING_SCENE,
