@@ -112,8 +112,12 @@ static const ethd_setting *setting(const ethd_config *config, const char *key) {
 static ethd_device *reach_device(const ethd_config *config) {
   char message[ETHD_MESSAGE_MAX];
   ethd_device *d;
-  const ethd_device_def def = {
-      &config->setup, config->settings, config->setting_count, config->folder, arg.config, 0, NULL};
+  const ethd_device_def def = {.setup = config->is_space ? NULL : &config->setup,
+                               .settings = config->settings,
+                               .setting_count = config->setting_count,
+                               .folder = config->folder,
+                               .file = arg.config,
+                               .space = config->is_space ? &config->space : NULL};
   ethd_status status = arg.open ? ethd_device_open(config->device, NULL, &def, &d, message)
                                 : ethd_device_prepare(config->device, &def, &d, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
@@ -193,15 +197,18 @@ static ethd__figures figures(const ethd_config *config, const ethd_device *d, do
 
 static void end_of_page(int exceeded) { printf("\n%d bound%s exceeded\n", exceeded, exceeded == 1 ? "" : "s"); }
 
-/* A configuration of space says of its device what the bounds need. */
+/* A configuration of space without a device says of it what the bounds need. */
 static void check_space(ethd_config *config) {
-  if (arg.open || arg.counts || arg.delay || arg.force || arg.friction || arg.viscous || arg.latency)
-    ethd__fail(ETHD_EXIT_INPUT,
-               "%s: [space] is there; --open and the figures are for the plane, [ability] is for space", arg.config);
+  ethd_device *device = strcmp(config->device, ethd_driver_sim.id) ? reach_device(config) : NULL;
+  if (arg.counts || arg.delay || arg.force || arg.friction || arg.viscous || arg.latency)
+    ethd__fail(ETHD_EXIT_INPUT, "%s: [space] is there; the figures are for the plane, [ability] is for space",
+               arg.config);
   printf("; %s is valid\n\n", arg.config);
   ethd__report_setup(config);
   printf("\n");
-  end_of_page(ethd__report_space(&config->space));
+  if (device) ethd__report_drivers(config, device, arg.open);
+  end_of_page(ethd__report_space(&config->space, device));
+  ethd_device_close(device);
   ethd_config_free(config);
 }
 

@@ -1,6 +1,7 @@
 /* Prints the drivers' information on a device, from the open device or from its settings alone. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "check/report.h"
 #include "clock.h"
@@ -25,12 +26,24 @@ static void joints(const ethd_config *config, ethd_device *device) {
          pose.x.y);
 }
 
+/* What an arm says of itself, such as the way that is left to the nearest joint limit. */
+static void space_figures(const ethd_device *device) {
+  static ethd_figure all[ETHD_FIGURES_MAX];
+  const char *head = "figures";
+  for (uint32_t i = 0, n = ethd_device_figures(device, all, ETHD_FIGURES_MAX); i < n; i++, head = "")
+    printf("%-12s %-32s %.4g %s\n", head, all[i].name, all[i].value, strcmp(all[i].unit, "1") ? all[i].unit : "");
+}
+
 void ethd__report_drivers(const ethd_config *config, ethd_device *device, bool is_open) {
   const ethd_limits *l = &config->setup.limits;
   const char *remark;
   printf("drivers      %s: %s\n", config->device,
          is_open ? "opened, nothing enabled" : "read, not touched (--open asks the device)");
   for (uint32_t i = 0; (remark = ethd_device_remark(device, i)); i++) printf("             %s\n", remark);
+  if (config->is_space) {
+    space_figures(device);
+    return;
+  }
   if (is_open) joints(config, device);
   limit("limits       torque", l->torque, "Nm", 1);
   limit(", speed", l->speed, "m/s", 1);

@@ -25,7 +25,8 @@ typedef struct ethd__subject {
   ethd__bounds_felt felt; /* of tracking at the ring; NaN: unknown law or out of reach */
 } ethd__subject;
 
-/* Prints the drivers' remarks and the effective limits. is_open: the device itself was read. */
+/* Prints the drivers' remarks and the effective limits, of an arm in space its figures. is_open: the device itself was
+   read. */
 void ethd__report_drivers(const ethd_config *config, ethd_device *device, bool is_open);
 
 /* Sets the delay if no option, driver or plant gives it. With an open device it measures the longest spacing of
@@ -53,8 +54,8 @@ int ethd__report_threshold(const ethd__subject *subject);
 int ethd__report_tick(const ethd__subject *subject);
 
 /* Prints the distance before a wall at which the device has to react, and whether the gap is enough; returns how many
-   bounds are exceeded. */
-int ethd__report_space(const ethd_space_setup *setup);
+   bounds are exceeded. `device` says what it can do before the setup's [ability] does; NULL: there is none. */
+int ethd__report_space(const ethd_space_setup *setup, const ethd_device *device);
 
 /* Writes the velocity estimator as "lowpass, cutoff 133.4 Hz". */
 void ethd__velocity_text(const ethd_setup *setup, char *out, size_t room);

@@ -5,9 +5,10 @@
 #include "check/report.h"
 
 typedef struct reaction {
-  double a;    /* m/s^2: the device's deceleration; NaN: not known */
-  double late; /* s from a command to its motion, plus the period for which it is held */
-  double gap;  /* m between finger and effector */
+  double a;         /* m/s^2: the device's deceleration; NaN: not known */
+  double late;      /* s from a command to its motion, plus the period for which it is held */
+  const char *from; /* where the delay is from */
+  double gap;       /* m between finger and effector */
 } reaction;
 
 static double param(const ethd_space_setup *s, const char *name, double otherwise) {
@@ -15,14 +16,34 @@ static double param(const ethd_space_setup *s, const char *name, double otherwis
   return isnan(value) ? otherwise : value;
 }
 
+/* Returns what the device can do along the worst of the axes, as it stands; NaN: it doesn't say. */
+static ethd_ability worst_of(const ethd_device *device) {
+  ethd_ability worst = ethd_ability_unknown();
+  for (int k = 0; k < 6; k++) {
+    double n[3] = {0, 0, 0};
+    n[k / 2] = k % 2 ? -1 : 1;
+    const ethd_ability a = ethd_device_able(device, n);
+    worst.acceleration = fmin(worst.acceleration, a.acceleration);
+    worst.force = fmin(worst.force, a.force);
+    worst.mass = fmax(worst.mass, a.mass);
+    worst.delay = fmax(worst.delay, a.delay);
+  }
+  return worst;
+}
+
 /* The device's reaction in the law `approach`. */
-static reaction reaction_of(const ethd_space_setup *s) {
-  const ethd_ability *able = &s->ability;
+static reaction reaction_of(const ethd_space_setup *s, const ethd_device *device) {
+  const ethd_ability said = device ? worst_of(device) : ethd_ability_unknown();
+  const bool knows = !isnan(said.acceleration) || !isnan(said.delay) || !isnan(said.mass);
+  const ethd_ability *able = knows ? &said : &s->ability;
   const double limit = s->kind == ETHD_SPACE_VELOCITY ? s->acceleration : (double)INFINITY;
   double a = fmin(isnan(able->acceleration) ? able->force / able->mass : able->acceleration, limit);
   if (!(a < 1e6)) a = param(s, "transition.acceleration", NAN);
-  return (reaction){param(s, "transition.effort", 1) * a, (isnan(able->delay) ? 0 : able->delay) + s->period,
-                    s->radius - s->finger_radius};
+  const char *from = knows ? "of the device" : "of [ability]";
+  return (reaction){.a = param(s, "transition.effort", 1) * a,
+                    .late = (isnan(able->delay) ? 0 : able->delay) + s->period,
+                    .gap = s->radius - s->finger_radius,
+                    .from = isnan(able->delay) ? "not known (0; [ability] delay gives it)" : from};
 }
 
 static double distance(const reaction *r, double v) { return v * r->late + v * v / (2 * r->a); }
@@ -32,19 +53,19 @@ static double speed_of(const reaction *r, double d) {
   return 2 * d / (r->late + sqrt(r->late * r->late + 2 * d / r->a));
 }
 
-int ethd__report_space(const ethd_space_setup *s) {
+int ethd__report_space(const ethd_space_setup *s, const ethd_device *device) {
   static const double speeds[] = {0.2, 0.4};
-  const reaction r = reaction_of(s);
+  const reaction r = reaction_of(s, device);
   int exceeded = 0;
   printf("reaction distance        v t_d + v^2/(2a): the finger comes closer by this until the effector stands at the "
          "wall\n");
-  printf("  t_d                    %.4g ms: delay %s, and the period %.4g ms\n", 1e3 * r.late,
-         isnan(s->ability.delay) ? "not known (0; [ability] delay gives it)" : "of [ability]", 1e3 * s->period);
+  printf("  t_d                    %.4g ms: delay %s, and the period %.4g ms\n", 1e3 * r.late, r.from, 1e3 * s->period);
   if (isnan(r.a)) {
     printf("  a                      not known: [ability] acceleration, or force and mass, give it\n");
     return 0;
   }
-  printf("  a                      %.4g m/s^2\n", r.a);
+  printf("  a                      %.4g m/s^2%s\n", r.a,
+         device ? ": the law's share of the least that setup and device allow along x, y and z" : "");
   for (int i = 0; i < 2; i++) {
     const double need = distance(&r, speeds[i]);
     printf("  at %.1f m/s             %.3f mm of the gap, %.3f mm: %s\n", speeds[i], 1e3 * need, 1e3 * r.gap,

@@ -14,7 +14,9 @@
 #include <ethd/ethd.h>
 #include <stdio.h>
 
-#define DEEPER 0.01 /* m: surfaces that are farther than the nearest by more than this are left out */
+/* m: surfaces that are farther than the nearest by more than this are left out. An effector that slides towards a corner sees
+   the other wall this far before it has to stand, so v^2 / (2 a) must be less. */
+#define DEEPER 0.01
 
 typedef struct mesh {
   const struct aiScene *file;
