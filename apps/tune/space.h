@@ -11,13 +11,13 @@
 
 /* The keys that are tuned unless --range says otherwise. X(name, the least share of its own value, the largest
    multiple, benefit and cost of a larger value). */
-#define ETHD_TUNE_KNOWN(X)                                                                       \
-  X("tracking.k_t", 0.5, 8, "less lag and fewer early contacts; it costs a rougher torque")      \
-  X("tracking.b_t", 0.5, 8, "a ring that oscillates less; it costs noticeable counts")           \
-  X("contact.k_e", 1, 4, "a harder wall; it costs rebound")                                      \
-  X("contact.b_e", 0.5, 4, "less depth on entering; it costs margin")                            \
-  X("transition.b_d", 0.5, 3, "a shorter stop, until the motors saturate; it costs margin")      \
-  X("velocity.cutoff", 0.5, 3, "less lag of the speed, more margin; it costs noticeable counts") \
+#define ETHD_TUNE_KNOWN(X)                                                                  \
+  X("tracking.k_t", 0.5, 8, "less lag and fewer early contacts; it costs a rougher torque") \
+  X("tracking.b_t", 0.5, 8, "a ring that oscillates less; it costs noticeable counts")      \
+  X("contact.k_e", 1, 4, "a harder wall; it costs rebound")                                 \
+  X("contact.b_e", 0.5, 4, "less depth on entering; it costs margin")                       \
+  X("transition.b_d", 0.5, 3, "a shorter stop, until the motors saturate; it costs margin") \
+  X("velocity.cutoff", 0.5, 3, "less speed lag, more margin; it costs noticeable counts")   \
   X("finger_filter.acceleration", 0.2, 20, "a finger followed sooner; it costs sensor noise")
 
 typedef struct ethd__tune_key {
