@@ -155,9 +155,8 @@ static void from_plant(const ethd_config *config, ethd__figures *f) {
   char message[ETHD_MESSAGE_MAX];
   ethd_plant p;
   const ethd_setting *own = setting(config, "plant");
-  char *path = ethd__plant_path(own ? own->value : ETHD__PLANT, config->folder);
+  ETHD__FREED char *path = ethd__plant_path(own ? own->value : ETHD__PLANT, config->folder);
   ethd_status status = path ? ethd_plant_load(path, &p, message) : ETHD_E_MEMORY;
-  free(path);
   if (status) return;
   for (int i = 0; i < 2; i++) f->force[i] = p.force_limit;
   f->loop = ethd__bounds_device_of(&p, 0);

@@ -115,10 +115,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 static ethd_plant load_plant(const char *name) {
   char message[ETHD_MESSAGE_MAX];
   ethd_plant plant;
-  char *path = ethd__plant_path(name, ".");
+  ETHD__FREED char *path = ethd__plant_path(name, ".");
   if (!path) ethd__fail_memory();
   if (ethd__plant_read(path, path, &plant, message)) ethd__fail(ETHD_EXIT_INPUT, "%s", message);
-  free(path);
   return plant;
 }
 
@@ -141,10 +140,8 @@ static void refuse_recorded(const char *option, const char *output, const ethd__
 
 /* What is read isn't written over, nor is one output by another. Returns the path of the CSV; NULL: none is written. */
 static char *check_outputs(const ethd__evidence *e) {
-  char *csv = arg.csv    ? strdup(arg.csv)
-              : arg.plot ? ethd__picture_table(arg.plot)
-                         : NULL,
-       *base = ethd__plant_path(arg.base, ".");
+  char *csv = arg.csv ? strdup(arg.csv) : arg.plot ? ethd__picture_table(arg.plot) : NULL;
+  ETHD__FREED char *base = ethd__plant_path(arg.base, ".");
   const char *table = arg.csv ? "--csv" : "--plot";
   if ((arg.csv && !csv) || !base) ethd__fail_memory();
   const char *const outputs[][2] = {{"--out", arg.out}, {table, csv}, {"--plot", arg.plot}};
@@ -153,7 +150,6 @@ static char *check_outputs(const ethd__evidence *e) {
     ethd__refuse_input(outputs[i][0], outputs[i][1], "--base", base);
     for (int k = 0; k < i; k++) ethd__refuse_same(outputs[i][0], outputs[i][1], outputs[k][0], outputs[k][1]);
   }
-  free(base);
   return csv;
 }
 
@@ -194,7 +190,8 @@ static void fit_arm(ethd__finding *f) {
 
 static int identify(const ethd__evidence *e) {
   static ethd__finding f;
-  char message[ETHD_MESSAGE_MAX], *csv = check_outputs(e);
+  char message[ETHD_MESSAGE_MAX];
+  ETHD__FREED char *csv = check_outputs(e);
   f.plant = load_plant(arg.base);
   f.base = arg.base;
   f.evidence = e;
@@ -206,7 +203,6 @@ static int identify(const ethd__evidence *e) {
   ethd__finding_plant(&f);
   ethd__page_print(stdout, &f);
   write_files(&f, csv);
-  free(csv);
   free(f.residual);
   ethd__shooting_close(&f.problem);
   return ETHD_EXIT_DONE;

@@ -148,11 +148,10 @@ static void parse_screen(const char *text) {
 
 static void parse_participant(const char *text) {
   const char *to = strchr(text, '-');
-  char *from = strndup(text, to ? (size_t)(to - text) : strlen(text));
+  ETHD__FREED char *from = strndup(text, to ? (size_t)(to - text) : strlen(text));
   if (!from) ethd__fail_memory();
   arg.first = ethd__option_integer("--participant", from, 1, ETHD_STUDY_SESSION_PEOPLE);
   arg.last = to ? ethd__option_integer("--participant", to + 1, arg.first, ETHD_STUDY_SESSION_PEOPLE) : arg.first;
-  free(from);
 }
 
 static void decide(const char *option, const char *decision, const char *text) {

@@ -1,7 +1,6 @@
 /* Finds gains for a plant and its hands, and writes the user's configuration with them. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
@@ -53,22 +52,19 @@ static void write_tuned(const ethd__tune_search *search, const ethd__tune_entry 
                         const ethd__tune_worths *worths) {
   char message[ETHD_MESSAGE_MAX];
   const ethd__tune_space *space = search->rig->space;
-  char *folder = ethd__path_folder(arg.out), *head = head_of(search, choice, loaded, worths);
+  ETHD__FREED char *folder = ethd__path_folder(arg.out), *head = head_of(search, choice, loaded, worths);
   bool same = folder && space->config->folder && !strcmp(folder, space->config->folder);
-  char *text = ethd__tuned_text(space, &choice->point, head, !same);
+  ETHD__FREED char *text = ethd__tuned_text(space, &choice->point, head, !same);
   check(ethd_text_write(arg.out, text, strlen(text), message), message);
-  free(text);
-  free(head);
-  free(folder);
 }
 
 static void draw(const ethd__tune_space *space, const ethd__loaded *loaded) {
-  char message[ETHD_MESSAGE_MAX], *heading;
+  char message[ETHD_MESSAGE_MAX];
+  ETHD__FREED char *heading = NULL;
   if (asprintf(&heading, "Gains for plant %s, transition %s", loaded->plant_name, space->law) < 0) ethd__fail_memory();
   const ethd__picture_value values[] = {
       {"in", arg.csv, true}, {"out", arg.plot, true}, {"heading", heading, false}, {0}};
   ethd_status status = ethd__picture_draw("tune.gp", NULL, values, message);
-  free(heading);
   if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
 }
 

@@ -9,6 +9,7 @@
 #include "check/report.h"
 #include "clock.h"
 #include "ethd/estimate.h"
+#include "text/freed.h"
 
 #define TICKS 20000
 
@@ -56,11 +57,10 @@ static bool is_realtime(void) {
 
 int ethd__report_tick(const ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
-  double *ns = malloc(TICKS * sizeof *ns);
+  ETHD__FREED double *ns = malloc(TICKS * sizeof *ns);
   printf("\ntick         rehearsed %d times all over the arm's range, on this machine, now\n", TICKS);
   if (!ns || !measure(setup, ns)) {
     printf("  no memory\n");
-    free(ns);
     return 0;
   }
   qsort(ns, TICKS, sizeof *ns, ascending);
@@ -71,7 +71,6 @@ int ethd__report_tick(const ethd__subject *s) {
          1e-3 * ns[TICKS - 1 - TICKS / 1000], 1e-3 * ns[TICKS - 1],
          most < setup->period ? "limits.step_time" : "loop.period", 1e6 * most,
          is_realtime() ? "a short measurement" : "no bound: this process isn't realtime");
-  free(ns);
   if (judged <= most) return 0;
   printf("  EXCEEDED; to change: fewer objects in the scene, a longer loop.period or limits.step_time\n");
   return 1;

@@ -210,13 +210,13 @@ void ethd__refuse_same(const char *option, const char *output, const char *other
 }
 
 void ethd__option_list(const char *option, const char *text, void (*each)(const char *word, void *user), void *user) {
-  char *words = strdup(text), *rest = words, *word;
+  ETHD__FREED char *words = strdup(text);
+  char *rest = words, *word;
   if (!words) ethd__fail_memory();
   while ((word = strsep(&rest, ","))) {
     if (!*word) ethd__fail(ETHD_EXIT_INPUT, "%s: an empty word in the list", option);
     each(word, user);
   }
-  free(words);
 }
 
 /* ---- files that came with the programs ---- */
@@ -227,16 +227,13 @@ static char *data_folder(void) {
   if (given && *given) return strdup(given);
   ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
   program[length > 0 ? length : 0] = 0;
-  char *bin = ethd__path_folder(program);
-  char *folder = bin ? ethd__path_join(bin, "../share/ethd") : NULL;
-  free(bin);
-  return folder;
+  ETHD__FREED char *bin = ethd__path_folder(program);
+  return bin ? ethd__path_join(bin, "../share/ethd") : NULL;
 }
 
 static char *in_data_folder(const char *name) {
-  char *folder = data_folder();
+  ETHD__FREED char *folder = data_folder();
   char *path = folder ? ethd__path_join(folder, name) : NULL;
-  free(folder);
   if (!path) ethd__fail_memory();
   return path;
 }
@@ -270,12 +267,11 @@ void ethd__need_plane(const ethd_config *config) {
 }
 
 void ethd__need_recording(const char *folder) {
-  char *ticks;
+  ETHD__FREED char *ticks = NULL;
   if (asprintf(&ticks, "%s/tick.npy", folder) < 0) ethd__fail_memory();
   if (!ethd__file_taken(ticks))
     ethd__fail(ETHD_EXIT_INPUT, "%s: no recording, whose tick.npy is needed: %s; ethd-run --record makes one", folder,
                strerror(errno));
-  free(ticks);
 }
 
 char *ethd__motion_folder(void) {

@@ -11,6 +11,7 @@
 #include <stdio.h>
 
 #include "ethd/config.h"
+#include "text/freed.h"
 
 enum { ETHD_EXIT_DONE = 0, ETHD_EXIT_FAILED = 1, ETHD_EXIT_INPUT = 2 };
 

@@ -28,13 +28,12 @@ static void put_string(FILE *to, const char *text) {
 }
 
 static void put_path(FILE *to, const char *path) {
-  char *plain;
+  ETHD__FREED char *plain = NULL;
   if (*path == '/' || asprintf(&plain, "./%s", path) < 0) {
     put_string(to, path);
     return;
   }
   put_string(to, plain);
-  free(plain);
 }
 
 static bool is_out(const ethd__picture_value *v) { return strcmp(v->name, "out") == 0; }
@@ -142,19 +141,13 @@ ethd_status ethd__picture_draw(const char *script, const char *folder, const eth
                                char message[ETHD_MESSAGE_MAX]) {
   char name[64];
   snprintf(name, sizeof name, "plot/%s", script);
-  char *found = ethd__data_path(name), *path = realpath(found, NULL);
-  free(found);
+  ETHD__FREED char *found = ethd__data_path(name), *path = realpath(found, NULL);
   FILE *commands = path ? tmpfile() : NULL;
-  if (!commands) {
-    free(path);
-    return no_commands(message);
-  }
+  if (!commands) return no_commands(message);
   put_commands(commands, path, folder, values);
   while (!is_out(values)) values++;
-  char *out = ethd__path_join(folder, values->text);
+  ETHD__FREED char *out = ethd__path_join(folder, values->text);
   ethd_status status = out ? draw(commands, script, out, message) : ethd__no_memory(message, script);
   fclose(commands);
-  free(path);
-  free(out);
   return status;
 }

@@ -122,13 +122,11 @@ static ethd_status write_study(const ethd__folder *folder, const char *out, char
   ethd_status status = find_view(folder, &view, message);
   if (status) return status;
   json_t *facts = study(folder, &view);
-  char *text = json_dumps(facts, JSON_INDENT(2) | JSON_REAL_PRECISION(17)),
-       *path = ethd__folder_path(out, "study.json");
+  ETHD__FREED char *text = json_dumps(facts, JSON_INDENT(2) | JSON_REAL_PRECISION(17)),
+                   *path = ethd__folder_path(out, "study.json");
   status = text ? ethd_text_write(path, text, strlen(text), message)
                 : ethd__say(message, ETHD_E_SYNTAX, "%s: a text isn't UTF-8", folder->protocol.path);
   json_decref(facts);
-  free(text);
-  free(path);
   return status;
 }
 
@@ -138,9 +136,8 @@ static ethd_status write_tables(char *const text[ETHD_TABLES], const char *out, 
     char name[40];
     if (!text[i]) continue;
     snprintf(name, sizeof name, "%s.csv", ethd__table_names[i]);
-    char *path = ethd__folder_path(out, name);
+    ETHD__FREED char *path = ethd__folder_path(out, name);
     status = ethd_text_write(path, text[i], strlen(text[i]), message);
-    free(path);
   }
   return status;
 }

@@ -1,4 +1,3 @@
-#include <stdlib.h>
 
 #include "describe/describe.h"
 #include "tap/study.h"
@@ -63,9 +62,8 @@ ethd_status ethd__encounter_write(const ethd__folder *folder, const char *law, c
   const ethd__view view = ethd__stage_view(&stage, &speed, tap.finger_radius);
   if (!status) status = run(&stage, &rule, &tap);
   ethd__file_name(words, ".csv", name);
-  char *path = ethd__folder_path(out, name);
+  ETHD__FREED char *path = ethd__folder_path(out, name);
   if (!status) status = ethd__trace_write(path, &view, &stage.rows, message);
-  free(path);
   ethd__stage_close(&stage);
   return status;
 }

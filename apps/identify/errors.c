@@ -107,10 +107,9 @@ static double *measure(ethd__shooting *p, double **slopes) {
 }
 
 void ethd__fit_errors(ethd__shooting *p, double errors[ETHD__UNKNOWNS], double step[ETHD__UNKNOWNS]) {
-  double own[N], *slopes, *residual = measure(p, &slopes);
+  double own[N];
+  ETHD__FREED double *slopes = NULL, *residual = measure(p, &slopes);
   judge(p, residual, slopes, errors, step ? step : own);
-  free(residual);
-  free(slopes);
 }
 
 /* ---- recordings of another device ---- */

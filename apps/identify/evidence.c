@@ -72,33 +72,28 @@ static void remember(ethd__evidence *e, const char *folder) {
 }
 
 static ethd_status take(ethd__evidence *e, const char *folder, const ethd_config *config, char *message) {
-  char *ticks = ethd__folder_path(folder, ETHD_RECORDING_TICK),
-       *path = ethd__folder_path(folder, ETHD_RECORDING_EVENTS);
-  void *rows = NULL;
+  ETHD__FREED char *ticks = ethd__folder_path(folder, ETHD_RECORDING_TICK),
+                   *path = ethd__folder_path(folder, ETHD_RECORDING_EVENTS);
+  ETHD__FREED void *rows = NULL;
   size_t count = 0;
   ethd__record_events events = {0};
   ethd_status status = agree(e, folder, &config->setup, message);
   if (!status) status = ethd_npy_read(ticks, ethd_trace_columns, sizeof(ethd_trace), &rows, &count, message);
   if (!status) status = ethd__record_events_read(path, &events, message);
   if (!status) {
-    unsigned char *armed = armed_ticks(&events, rows, count, e->period);
+    ETHD__FREED unsigned char *armed = armed_ticks(&events, rows, count, e->period);
     remember(e, folder);
     ethd__evidence_rows(e, &config->setup, rows, count, armed);
-    free(armed);
   }
   ethd__record_events_free(&events);
-  free(rows);
-  free(ticks);
-  free(path);
   return status;
 }
 
 static ethd_status add_recording(ethd__evidence *e, const char *folder, char *message) {
-  char *path = ethd__folder_path(folder, ETHD_RECORDING_CONFIG);
+  ETHD__FREED char *path = ethd__folder_path(folder, ETHD_RECORDING_CONFIG);
   ethd_config *config = NULL;
   ethd_status status = (e->plugins ? ethd_config_load : ethd_config_load_received)(path, &config, message);
   if (!status) ethd__need_plane(config);
-  free(path);
   if (!status) status = take(e, folder, config, message);
   ethd_config_free(config);
   return status;
@@ -107,10 +102,8 @@ static ethd_status add_recording(ethd__evidence *e, const char *folder, char *me
 /* ---- folders ---- */
 
 static bool is_recording(const char *folder) {
-  char *path = ethd__folder_path(folder, ETHD_RECORDING_TICK);
-  bool found = ethd__file_taken(path);
-  free(path);
-  return found;
+  ETHD__FREED char *path = ethd__folder_path(folder, ETHD_RECORDING_TICK);
+  return ethd__file_taken(path);
 }
 
 static int is_visible(const struct dirent *entry) { return entry->d_name[0] != '.'; }
@@ -123,9 +116,8 @@ static ethd_status add_below(ethd__evidence *e, const char *folder, int deep, ch
   int n = fd < 0 ? -1 : scandirat(fd, ".", &entries, is_visible, alphasort);
   if (fd >= 0) close(fd);
   for (int i = 0; i < n; i++) {
-    char *path = ethd__folder_path(folder, entries[i]->d_name);
+    ETHD__FREED char *path = ethd__folder_path(folder, entries[i]->d_name);
     if (!status && (entries[i]->d_type == DT_DIR || is_recording(path))) status = add_below(e, path, deep - 1, message);
-    free(path);
     free(entries[i]);
   }
   if (n >= 0) free(entries);

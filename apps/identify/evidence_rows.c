@@ -111,7 +111,7 @@ static void note_clipped(ethd__evidence *e, const ethd_trace *rows, size_t count
 void ethd__evidence_rows(ethd__evidence *e, const ethd_setup *setup, const ethd_trace *rows, size_t count,
                          const unsigned char *armed) {
   size_t base = e->count;
-  unsigned char *good = longer(NULL, count, 1);
+  ETHD__FREED unsigned char *good = longer(NULL, count, 1);
   memcpy(good, armed, count);
   e->q = longer(e->q, base + count, sizeof *e->q);
   e->torque = longer(e->torque, base + count, sizeof *e->torque);
@@ -129,5 +129,4 @@ void ethd__evidence_rows(ethd__evidence *e, const ethd_setup *setup, const ethd_
   note_clipped(e, rows, count, good);
   cut(e, rows, count, good, base);
   e->count += count;
-  free(good);
 }

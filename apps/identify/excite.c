@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -101,7 +100,8 @@ static void run(ethd__session *s, const seen *found, double seconds) {
 
 static void dry_run(const ethd__excitation *x, const ethd_config *c, double torque, seen *out) {
   static ethd__session session;
-  char message[ETHD_MESSAGE_MAX], *text = compose(x, c, torque, true);
+  char message[ETHD_MESSAGE_MAX];
+  ETHD__FREED char *text = compose(x, c, torque, true);
   *out = (seen){.at = x->at};
   ethd__session_options o = {.config = x->config,
                              .text = text,
@@ -116,12 +116,12 @@ static void dry_run(const ethd__excitation *x, const ethd_config *c, double torq
   ethd__session_halt(&session, false);
   if (ethd__session_end(&session, message)) ethd__fail(ETHD_EXIT_FAILED, "the dry run: %s", message);
   ethd__session_free(&session);
-  free(text);
 }
 
 static int record(const ethd__excitation *x, const ethd_config *c, double torque) {
   static ethd__session session;
-  char message[ETHD_MESSAGE_MAX], *text = compose(x, c, torque, false);
+  char message[ETHD_MESSAGE_MAX];
+  ETHD__FREED char *text = compose(x, c, torque, false);
   seen out = {.at = x->at};
   ethd__session_options o = {.config = x->config,
                              .text = text,
@@ -141,7 +141,6 @@ static int record(const ethd__excitation *x, const ethd_config *c, double torque
   ethd__summary_print(stdout, &session, x->record);
   if (status) fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
   ethd__session_free(&session);
-  free(text);
   if (!status && left_box(&out))
     fprintf(stderr,
             "%s: the guard stopped the ring %.3g m from the middle of the box: put it there before the start, or "

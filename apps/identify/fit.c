@@ -41,13 +41,12 @@ static double dependence(const ethd__shooting *p, const double *residual) {
 }
 
 static double dependence_of(ethd__shooting *p) {
-  double x[ETHD__UNKNOWNS], *residual = malloc(p->rows * sizeof *residual), factor = 1;
-  if (!residual) return factor;
+  double x[ETHD__UNKNOWNS];
+  ETHD__FREED double *residual = malloc(p->rows * sizeof *residual);
+  if (!residual) return 1;
   ethd__chosen_get(&p->chosen, &p->plant, x);
   ethd__shooting_residual(p, x, residual);
-  factor = dependence(p, residual);
-  free(residual);
-  return factor;
+  return dependence(p, residual);
 }
 
 /* Bayes' criterion (Schwarz 1978), for the number of independent residuals, less the states. */

@@ -176,12 +176,11 @@ ethd_status ethd__sensing_find(const ethd__evidence *e, ethd__sensing *out, char
   *out = (ethd__sensing){.rate = none, .latency = none, .noise = none};
   ethd_status status = find_counts(e, out, message);
   if (status || e->delivery_count < 10) return status;
-  double *room = malloc(2 * e->delivery_count * sizeof *room);
+  ETHD__FREED double *room = malloc(2 * e->delivery_count * sizeof *room);
   if (!room) ethd__fail_memory();
   double pace = pace_of(e, room);
   find_rate(e, pace, &out->rate);
   find_latency(e, &out->latency);
   find_noise(e, pace, room, &out->noise);
-  free(room);
   return ETHD_OK;
 }

@@ -49,7 +49,7 @@ static double *numbers(size_t count) {
 double ethd__fit_squares(ethd__shooting *p, int most, const char *what) {
   int m = (int)p->rows, n = p->chosen.count, calls = 0, slopes_taken = 0, order[ETHD__UNKNOWNS];
   double x[ETHD__UNKNOWNS], diag[ETHD__UNKNOWNS], qtf[ETHD__UNKNOWNS], wa[3][ETHD__UNKNOWNS], sum = 0;
-  double *residual = numbers(p->rows), *slopes = numbers(p->rows * (size_t)n), *wa4 = numbers(p->rows);
+  ETHD__FREED double *residual = numbers(p->rows), *slopes = numbers(p->rows * (size_t)n), *wa4 = numbers(p->rows);
   descent s = {p, what, 0, 2 * (uint64_t)most};
   ethd__chosen_get(&p->chosen, &p->plant, x);
   ethd__shooting_settle(p);
@@ -61,8 +61,5 @@ double ethd__fit_squares(ethd__shooting *p, int most, const char *what) {
   ethd__progress(1, 1, what);
   ethd__chosen_set(&p->chosen, x, &p->plant);
   for (size_t i = 0; i < p->rows; i++) sum += residual[i] * residual[i];
-  free(residual);
-  free(slopes);
-  free(wa4);
   return sum;
 }

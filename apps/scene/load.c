@@ -1,4 +1,3 @@
-#include <stdlib.h>
 
 #include "cli/cli.h"
 #include "clock.h"
@@ -38,7 +37,7 @@ ethd_scene *ethd__world_load(const char *path, ethd_solids **solids, double *sec
   size_t length;
   ethd_scene *scene;
   ethd_error error, other;
-  char *text = read_text(path, &length);
+  ETHD__FREED char *text = read_text(path, &length);
   double start = seconds_now();
   *solids = NULL;
   if (ethd_scene_parse(text, length, &scene, &error) < 0) {
@@ -48,6 +47,5 @@ ethd_scene *ethd__world_load(const char *path, ethd_solids **solids, double *sec
     if (status < 0) refuse(ethd__scene_refusal, path, &error);
   }
   *seconds = seconds_now() - start;
-  free(text);
   return scene;
 }

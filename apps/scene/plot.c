@@ -1,7 +1,6 @@
 /* Writes a picture of a scene and its trees as pieces of lines: a CSV that apps/plot/scene.gp draws. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
@@ -147,7 +146,8 @@ static void draw_all(ethd_csv_out *out, const ethd_scene *scene, const ethd_setu
 /* ---- files ---- */
 
 int ethd__scene_plot(const ethd__scene_args *arg, const ethd_scene *scene, const ethd_setup *setup) {
-  char message[ETHD_MESSAGE_MAX], *csv = ethd__picture_table(arg->plot);
+  char message[ETHD_MESSAGE_MAX];
+  ETHD__FREED char *csv = ethd__picture_table(arg->plot);
   ethd__refuse_input("--plot", arg->plot, "info", arg->scene);
   ethd__refuse_input("--plot", csv, "info", arg->scene);
   ethd__refuse_input("--plot", csv, "--config", arg->config);
@@ -160,6 +160,5 @@ int ethd__scene_plot(const ethd__scene_args *arg, const ethd_scene *scene, const
   if (ethd__picture_ready(message) < 0 || ethd__picture_draw("scene.gp", NULL, values, message) < 0)
     ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   printf("picture:      %s, drawn from %s\n", arg->plot, csv);
-  free(csv);
   return ETHD_EXIT_DONE;
 }

@@ -1,7 +1,6 @@
 #include "screen/commands.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -44,21 +43,21 @@ static void check_study(const ethd__study_options *o, const ethd__protocol *p, c
 }
 
 static void load_study(const ethd__study_options *o, ethd__protocol *out) {
-  char message[ETHD_MESSAGE_MAX], *study = o->study ? strdup(o->study) : ethd__data_path("paper.study");
+  char message[ETHD_MESSAGE_MAX];
+  ETHD__FREED char *study = o->study ? strdup(o->study) : ethd__data_path("paper.study");
   if (!study) ethd__fail_memory();
   ethd_status status = ethd__protocol_load(study, out, message);
   if (!status) status = ethd__folder_conditions(out, message);
-  free(study);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
 }
 
 static void make_folder(const ethd__study_options *o) {
-  char message[ETHD_MESSAGE_MAX], *store = ethd__folder_path(o->out, ETHD_STUDY_STORE);
+  char message[ETHD_MESSAGE_MAX];
+  ETHD__FREED char *store = ethd__folder_path(o->out, ETHD_STUDY_STORE);
   ethd__protocol protocol;
   ethd__loaded loaded;
   if (!o->simulate && ethd__file_taken(store) && !ethd__folder_simulated(o->out))
     ethd__fail(ETHD_EXIT_INPUT, "%s: holds a session; --resume %s goes on with it", o->out, o->out);
-  free(store);
   load_study(o, &protocol);
   ethd__folder_device(&protocol, &loaded);
   check_study(o, &protocol, &loaded);
@@ -91,7 +90,8 @@ static char *going_on(const ethd__study_options *o, const char *folder) {
 
 /* Returns true if the folder's configuration names plugins, which ethd-report runs only when it is told to. */
 static bool has_plugins(const char *folder) {
-  char message[ETHD_MESSAGE_MAX], *text = NULL, *path = ethd__folder_path(folder, "config.ini");
+  char message[ETHD_MESSAGE_MAX];
+  ETHD__FREED char *text = NULL, *path = ethd__folder_path(folder, "config.ini");
   size_t length = 0;
   ethd_ini ini;
   bool has = false;
@@ -100,8 +100,6 @@ static bool has_plugins(const char *folder) {
     has = ethd_ini_find(&ini, "plugins", "file") != NULL;
     ethd_ini_free(&ini);
   }
-  free(text);
-  free(path);
   return has;
 }
 
@@ -120,7 +118,7 @@ static void say_taps(const char *folder, uint64_t taps, size_t stations) {
 static int end(const ethd__study_options *o, const ethd__sitting *sitting, ethd_status status, bool over,
                const char *message) {
   const char *folder = o->resume ? o->resume : o->out;
-  char *command = going_on(o, folder);
+  ETHD__FREED char *command = going_on(o, folder);
   if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s; what was done is kept: %s goes on", message, command);
   if (over && sitting->unasked)
     printf("%s: %u questionnaire%s; ethd-study --resume %s with --ask or --screen asks %s\n", folder, sitting->unasked,
@@ -129,7 +127,6 @@ static int end(const ethd__study_options *o, const ethd__sitting *sitting, ethd_
     say_taps(folder, sitting->taps, 0);
   else
     fprintf(stderr, "%s: stopped; what was done is kept: %s goes on\n", program_invocation_short_name, command);
-  free(command);
   return over ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
 }
 

@@ -1,7 +1,6 @@
 #include "screen/place.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "cli/cli.h"
 #include "record/recording_parts.h"
@@ -36,9 +35,9 @@ static void close_device(ethd__screen_place *at) {
 
 /* Prints what isn't realtime on this machine and which risks remain. */
 static void take_device(ethd__screen_place *at, const ethd__place_options *o) {
-  char message[ETHD_MESSAGE_MAX], *config = ethd__folder_path(o->path, ETHD_RECORDING_CONFIG);
+  char message[ETHD_MESSAGE_MAX];
+  ETHD__FREED char *config = ethd__folder_path(o->path, ETHD_RECORDING_CONFIG);
   ethd_status status = ethd__station_open(&at->desk, config, at->folder.device, o->is_virtual, &at->station, message);
-  free(config);
   check(status, message);
   ethd__remarks_print(stderr, &at->station.session);
   at->device = ethd__station_source(&at->station);

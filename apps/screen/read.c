@@ -52,12 +52,11 @@ static void draw(ethd__screen *s, const reading *r) {
   char title[256];
   ethd__page page = page_of(s, r, title);
   size_t from = r->begin[r->now];
-  char *text = strndup(r->text + from, r->begin[r->now + 1] - from);
+  ETHD__FREED char *text = strndup(r->text + from, r->begin[r->now + 1] - from);
   if (!text) ethd__fail_memory();
   ethd__page_add(&page, ETHD_TEXT_SMALL, text, ethd__white);
   ethd__page_draw(&s->window, &page);
   ethd__window_end(&s->window);
-  free(text);
 }
 
 int ethd__screen_read(ethd__screen *s, const char *text, const char *title, const char *keys, const int *ends) {

@@ -92,21 +92,20 @@ ethd_status ethd__store_first(ethd__study_store *s, const char *sql, char **out,
 
 /* The file's tables, indices and the like must be ours, to the letter. */
 static ethd_status check_schema(ethd__study_store *s, char *message) {
-  char *mark, *text = NULL, ours[32];
+  ETHD__FREED char *mark = NULL, *version = NULL, *text = NULL;
+  char ours[32];
   snprintf(ours, sizeof ours, "%d", ETHD_STORE_APPLICATION);
   ethd_status status = ethd__store_first(s, "PRAGMA application_id", &mark, message);
   if (!status && (!mark || strcmp(mark, ours)))
     status = ethd__say(message, ETHD_E_SYNTAX, "%s: isn't a study's file", s->path);
-  free(mark);
   if (status) return status;
-  status = ethd__store_first(s, "PRAGMA user_version", &mark, message);
-  if (!status && (!mark || atoi(mark) != ETHD_STORE_VERSION))
+  status = ethd__store_first(s, "PRAGMA user_version", &version, message);
+  if (!status && (!version || atoi(version) != ETHD_STORE_VERSION))
     status =
         ethd__say(message, ETHD_E_SYNTAX,
                   "%s: of version %.20s, this program reads %d: the tables (taps.csv and so on) can be read, and a new "
                   "folder is needed to go on",
-                  s->path, mark ? mark : "?", ETHD_STORE_VERSION);
-  free(mark);
+                  s->path, version ? version : "?", ETHD_STORE_VERSION);
   if (!status)
     status = ethd__store_first(
         s,
@@ -114,7 +113,6 @@ static ethd_status check_schema(ethd__study_store *s, char *message) {
         &text, message);
   if (!status && (!text || strcmp(text, ethd__schema)))
     status = ethd__say(message, ETHD_E_SYNTAX, "%s: its tables aren't those of a study", s->path);
-  free(text);
   return status;
 }
 
@@ -129,17 +127,16 @@ static ethd_status check_content(ethd__study_store *s, char *message) {
   };
   ethd_status status = ETHD_OK;
   for (size_t i = 0; !status && i < sizeof queries / sizeof *queries; i++) {
-    char *found;
+    ETHD__FREED char *found = NULL;
     status = ethd__store_first(s, queries[i], &found, message);
     if (!status && found)
       status = ethd__say(message, ETHD_E_SYNTAX, "%s: is damaged: %.80s; restore the file from a copy", s->path, found);
-    free(found);
   }
   return status;
 }
 
 static ethd_status check_hash(ethd__study_store *s, const char *hash, char *message) {
-  char *begun;
+  ETHD__FREED char *begun = NULL;
   ethd_status status = ethd__store_first(s, "SELECT group_concat(hash) FROM study", &begun, message);
   if (!status && (!begun || strcmp(begun, hash)))
     status = ethd__say(
@@ -147,7 +144,6 @@ static ethd_status check_hash(ethd__study_store *s, const char *hash, char *mess
         "%s: begun with other files than study.ini, config.ini, scene.scene, device.plant, conditions and movements "
         "of now; put them back",
         s->path);
-  free(begun);
   return status;
 }
 

@@ -105,7 +105,8 @@ static void put_path(FILE *file, const char *path) {
 /* Returns the path as a URI. Links in the folders before it, which the user may have, are followed here, because SQLite
    refuses any. NULL: there is no such folder, or no memory. */
 static char *uri_of(const char *path, const char *query) {
-  char *folder = ethd__path_folder(path), *real = folder ? realpath(folder, NULL) : NULL, *uri = NULL;
+  ETHD__FREED char *folder = ethd__path_folder(path), *real = folder ? realpath(folder, NULL) : NULL;
+  char *uri = NULL;
   const char *name = strrchr(path, '/');
   if (real) {
     ethd__printed text;
@@ -117,8 +118,6 @@ static char *uri_of(const char *path, const char *query) {
     fputs(query, file);
     uri = ethd__print_end(&text);
   }
-  free(real);
-  free(folder);
   return uri;
 }
 
@@ -134,16 +133,14 @@ static ethd_status guard(ethd__study_store *s, char *message) {
 
 static ethd_status connect(const char *path, const char *query, int flags, ethd__study_store *out, char *message) {
   *out = (ethd__study_store){.path = strdup(path)};
-  char *uri = strcmp(path, ETHD_STORE_MEMORY) ? uri_of(path, query) : strdup(path);
+  ETHD__FREED char *uri = strcmp(path, ETHD_STORE_MEMORY) ? uri_of(path, query) : strdup(path);
   if (!out->path || !uri) {
-    free(uri);
     ethd_status status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
     ethd__store_close(out);
     return status;
   }
   int code =
       sqlite3_open_v2(uri, &out->db, flags | SQLITE_OPEN_URI | SQLITE_OPEN_NOFOLLOW | SQLITE_OPEN_EXRESCODE, NULL);
-  free(uri);
   ethd_status status = code ? refuse(out, code, message) : guard(out, message);
   if (status) ethd__store_close(out);
   return status;
@@ -174,11 +171,10 @@ static ethd_status begin(ethd__study_store *s, const char *hash, char *message) 
 static ethd_status prepare(ethd__study_store *s, const char *hash, char *message) {
   static const char settings[] = "PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = DELETE;"
                                  "PRAGMA journal_size_limit = 0; PRAGMA synchronous = FULL; BEGIN EXCLUSIVE";
-  char *tables = NULL;
+  ETHD__FREED char *tables = NULL;
   ethd_status status = ethd__store_do(s, settings, message);
   if (!status) status = ethd__store_first(s, "SELECT max(rowid) FROM sqlite_schema", &tables, message);
   if (!status) status = tables && *tables ? ethd__store_check(s, hash, message) : begin(s, hash, message);
-  free(tables);
   return status ? status : ethd__store_do(s, "COMMIT", message);
 }
 
@@ -227,11 +223,11 @@ ethd_status ethd__store_add(ethd__study_store *s, const char *path, char message
       "INSERT INTO event (utc, participant, block, attempt, event, detail) SELECT utc, participant, block, attempt, "
       "event, "
       "detail FROM part.event ORDER BY id; COMMIT";
-  char *uri = uri_of(path, READ_ONLY), unsaid[ETHD_MESSAGE_MAX];
+  ETHD__FREED char *uri = uri_of(path, READ_ONLY);
+  char unsaid[ETHD_MESSAGE_MAX];
   sqlite3_stmt *query = ethd__store_query(s, "ATTACH ? AS part");
   sqlite3_bind_text(query, 1, uri, -1, SQLITE_STATIC);
   ethd_status status = uri ? ethd__store_run(s, query, message) : ethd__no_memory(message, path);
-  free(uri);
   if (status) return status;
   status = ethd__store_do(s, insert, message);
   if (status) (void)!ethd__store_do(s, "ROLLBACK", unsaid);

@@ -147,12 +147,11 @@ char *ethd__table_header(ethd__study_table table, const ethd__protocol *protocol
 
 char *ethd__simulation_header(const ethd__protocol *p) {
   ethd__printed text;
-  char *header = ethd__table_header(ETHD_TABLE_TAPS, p);
+  ETHD__FREED char *header = ethd__table_header(ETHD_TABLE_TAPS, p);
   FILE *file = ethd__print_begin(&text);
   for (size_t i = 0; i < sizeof simulation / sizeof *simulation; i++) fprintf(file, "%s,", simulation[i].name);
   fputs(header, file);
   for (size_t i = 0; i < p->axis_count; i++) fprintf(file, ",%s", p->axes[i].key);
-  free(header);
   return ethd__print_end(&text);
 }
 

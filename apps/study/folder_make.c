@@ -65,9 +65,8 @@ static ethd_status want_movements(wanted_list *list) {
   if (parts->protocol->hands != ETHD_HANDS_RECORDED) return ETHD_OK;
   ethd_status status = ethd__movements_find(parts->protocol, NULL, &files, &count, list->message);
   for (size_t i = 0; !status && i < count; i++) {
-    char *name = ethd__folder_path(ETHD_STUDY_MOVEMENTS, strrchr(files[i], '/') + 1);
+    ETHD__FREED char *name = ethd__folder_path(ETHD_STUDY_MOVEMENTS, strrchr(files[i], '/') + 1);
     status = want_copy(list, name, files[i]);
-    free(name);
   }
   ethd__movements_free(files, count);
   return status;
@@ -115,21 +114,17 @@ static ethd_status want_all(wanted_list *list) {
 /* ---- what is there already ---- */
 
 static bool exists(const char *folder, const char *name) {
-  char *path = ethd__folder_path(folder, name);
-  bool there = ethd__file_taken(path);
-  free(path);
-  return there;
+  ETHD__FREED char *path = ethd__folder_path(folder, name);
+  return ethd__file_taken(path);
 }
 
 /* Whether the folder holds this file with the same text. */
 static bool says(const char *folder, const wanted_file *file) {
-  char unsaid[ETHD_MESSAGE_MAX], *path = ethd__folder_path(folder, file->name), *there;
+  char unsaid[ETHD_MESSAGE_MAX];
+  ETHD__FREED char *path = ethd__folder_path(folder, file->name), *there = NULL;
   size_t n;
-  bool same = !ethd_text_read(path, ETHD_STUDY_INPUT_MAX, &there, &n, unsaid) && n == file->length &&
-              !memcmp(there, file->text, n);
-  free(there);
-  free(path);
-  return same;
+  return !ethd_text_read(path, ETHD_STUDY_INPUT_MAX, &there, &n, unsaid) && n == file->length &&
+         !memcmp(there, file->text, n);
 }
 
 static ethd_status refuse(const wanted_list *list, const char *folder, const char *name) {
@@ -170,14 +165,13 @@ static ethd_status compare_begun(const wanted_list *list, const char *folder) {
 static bool is_input(const wanted_list *list, const char *folder) {
   const ethd__folder_parts *parts = list->parts;
   const char *const inputs[] = {parts->protocol->path, parts->loaded->path, parts->loaded->plant_path, parts->finger};
-  const char **own = calloc(list->count + 2, sizeof *own);
+  ETHD__FREED const char **own = calloc(list->count + 2, sizeof *own);
   bool found = false;
   if (!own) ethd__fail_memory();
   for (size_t i = 0; i < list->count; i++) own[i] = list->file[i].name;
   own[list->count] = ETHD_STUDY_VERSIONS;
   for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++)
     found |= inputs[i] && ethd__claim_holds(folder, own, inputs[i]);
-  free(own);
   return found;
 }
 
@@ -203,9 +197,8 @@ static ethd_status write_versions(const wanted_list *list, const char *folder) {
     fprintf(file, "plugin %s %s\n", sum, config->plugins[i]);
   }
   ethd__print_end(&text);
-  char *path = ethd__folder_path(folder, ETHD_STUDY_VERSIONS);
+  ETHD__FREED char *path = ethd__folder_path(folder, ETHD_STUDY_VERSIONS);
   if (!status) status = ethd_text_write(path, text.text, text.length, list->message);
-  free(path);
   free(text.text);
   return status;
 }
@@ -221,14 +214,12 @@ static ethd_status settle(const char *folder, char *message) {
 
 static ethd_status write_all(const wanted_list *list, const char *folder) {
   ethd_status status = ETHD_OK;
-  char *movements = ethd__folder_path(folder, ETHD_STUDY_MOVEMENTS);
+  ETHD__FREED char *movements = ethd__folder_path(folder, ETHD_STUDY_MOVEMENTS);
   if (list->parts->protocol->hands == ETHD_HANDS_RECORDED && !list->parts->finger)
     (void)ethd__file_make_folder(movements);
-  free(movements);
   for (size_t i = 0; !status && i < list->count; i++) {
-    char *path = ethd__folder_path(folder, list->file[i].name);
+    ETHD__FREED char *path = ethd__folder_path(folder, list->file[i].name);
     status = ethd_text_write(path, list->file[i].text, list->file[i].length, list->message);
-    free(path);
   }
   if (!status) status = write_versions(list, folder);
   return status ? status : settle(folder, list->message);

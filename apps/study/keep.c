@@ -73,14 +73,12 @@ static ethd_status put_in_place(const char *folder, const char *fresh, const cha
 
 ethd_status ethd__tap_keep(const char *folder, const char *name, const ethd_config *config, const ethd__taken *taken,
                            const char *words, char message[ETHD_MESSAGE_MAX]) {
-  char *fresh = ethd__folder_path(folder, FRESH), *path = ethd__folder_path(folder, name);
+  ETHD__FREED char *fresh = ethd__folder_path(folder, FRESH), *path = ethd__folder_path(folder, name);
   discard(fresh);
   ethd_status status = ethd__file_make_folder(folder) ? ethd__file_refuse(folder, message) : ETHD_OK;
   if (!status) status = write_fresh(fresh, config, taken, words, message);
   if (!status) status = put_in_place(folder, fresh, path, message);
   if (status) discard(fresh);
-  free(fresh);
-  free(path);
   return status;
 }
 
@@ -107,8 +105,9 @@ static ethd_status is_torn(const ethd__protocol *p, ethd__study_store *store, co
 
 ethd_status ethd__tap_remove_torn(const ethd__folder *folder, ethd__study_store *store,
                                   char message[ETHD_MESSAGE_MAX]) {
-  char *taps = ethd__folder_path(folder->path, ETHD_STUDY_RECORDINGS), *fresh = ethd__folder_path(taps, FRESH),
-       *torn = NULL;
+  ETHD__FREED char *taps = ethd__folder_path(folder->path, ETHD_STUDY_RECORDINGS),
+                   *fresh = ethd__folder_path(taps, FRESH);
+  char *torn = NULL;
   DIR *open_folder = ethd__file_list(taps);
   const struct dirent *entry;
   size_t count = 0;
@@ -126,8 +125,6 @@ ethd_status ethd__tap_remove_torn(const ethd__folder *folder, ethd__study_store 
                        torn, count - 1);
   if (!status) discard(fresh);
   if (!status && torn) discard(torn);
-  free(taps);
-  free(fresh);
   free(torn);
   return status;
 }

@@ -1,7 +1,6 @@
 #include "study/merge.h"
 
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "text/error_text.h"
@@ -19,15 +18,15 @@ static ethd_status count_taps(ethd__study_store *store, uint64_t *taps, char *me
 static void remove_fresh(const ethd__folder *folder) {
   static const char *const names[] = {FRESH "-journal", FRESH};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-    char *path = ethd__folder_path(folder->path, names[i]);
+    ETHD__FREED char *path = ethd__folder_path(folder->path, names[i]);
     (void)ethd__file_remove(path);
-    free(path);
   }
 }
 
 ethd_status ethd__merge_write(const ethd__folder *folder, const ethd__merge *merge, uint64_t *taps,
                               char message[ETHD_MESSAGE_MAX]) {
-  char *fresh = ethd__folder_path(folder->path, FRESH), *path = ethd__folder_path(folder->path, ETHD_STUDY_STORE);
+  ETHD__FREED char *fresh = ethd__folder_path(folder->path, FRESH),
+                   *path = ethd__folder_path(folder->path, ETHD_STUDY_STORE);
   ethd__study_store store;
   remove_fresh(folder);
   ethd_status status = ethd__store_open(fresh, folder->hash, &store, message);
@@ -38,7 +37,5 @@ ethd_status ethd__merge_write(const ethd__folder *folder, const ethd__merge *mer
   if (!status && ethd__file_move(fresh, path))
     status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, ethd__file_why());
   if (status) remove_fresh(folder);
-  free(fresh);
-  free(path);
   return status;
 }

@@ -7,9 +7,8 @@
 #include "text/text.h"
 
 static char *folder_of(const ethd__protocol *p) {
-  char *root = ethd__motion_folder(), *folder = ethd__path_join(root, p->motion);
-  free(root);
-  return folder;
+  ETHD__FREED char *root = ethd__motion_folder();
+  return ethd__path_join(root, p->motion);
 }
 
 ethd_status ethd__movements_find(const ethd__protocol *protocol, const char *finger, char ***files, size_t *count,
@@ -20,8 +19,6 @@ ethd_status ethd__movements_find(const ethd__protocol *protocol, const char *fin
   if (!protocol->motion)
     return ethd__say(message, ETHD_E_ARGUMENT, "%s: hand.source: recorded needs motion = FOLDER or --finger",
                      protocol->path);
-  char *folder = folder_of(protocol);
-  ethd_status status = folder ? ethd__movements_in(folder, files, count, message) : ETHD_E_MEMORY;
-  free(folder);
-  return status;
+  ETHD__FREED char *folder = folder_of(protocol);
+  return folder ? ethd__movements_in(folder, files, count, message) : ETHD_E_MEMORY;
 }

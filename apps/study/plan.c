@@ -94,11 +94,11 @@ static uint32_t next_balanced(const ethd__protocol *p, uint32_t people) {
 
 char *ethd__plan_table(const ethd__protocol *p) {
   ethd__study_block blocks[ETHD_STUDY_BLOCKS];
-  char id[ETHD_STUDY_ID_MAX], *header = ethd__table_header(ETHD_TABLE_ORDERS, p);
+  char id[ETHD_STUDY_ID_MAX];
+  ETHD__FREED char *header = ethd__table_header(ETHD_TABLE_ORDERS, p);
   ethd__printed table;
   FILE *file = ethd__print_begin(&table);
   fprintf(file, "%s\n", header);
-  free(header);
   for (uint32_t person = 0; person < p->participants && person < ETHD_STUDY_PLANNED; person++) {
     size_t count = ethd__order_of(p, person, blocks);
     ethd__participant_id(p, person, id);

@@ -2,7 +2,6 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "text/error_text.h"
@@ -145,10 +144,9 @@ ethd_status ethd__progress_open(const ethd__folder *folder, const char *name, bo
                      "%s: study.participants: found %" PRIu32
                      "; at most %u are allowed in a session, more with --simulate",
                      p->path, p->participants, ETHD_STUDY_SESSION_PEOPLE);
-  char *path = ethd__folder_path(folder->path, name);
+  ETHD__FREED char *path = ethd__folder_path(folder->path, name);
   ethd_status status = (write ? ethd__store_open : ethd__store_read)(path, folder->hash, out, message);
   if (!status) status = check(out, p, message);
   if (status) ethd__store_close(out);
-  free(path);
   return status;
 }

@@ -166,15 +166,12 @@ ethd_status ethd__protocol_parse(const char *text, size_t length, const char *na
 }
 
 ethd_status ethd__protocol_load(const char *path, ethd__protocol *out, char message[ETHD_MESSAGE_MAX]) {
-  char *text, *folder = ethd__path_folder(path);
+  ETHD__FREED char *text = NULL, *folder = ethd__path_folder(path);
   size_t length;
   *out = (ethd__protocol){0};
   ethd_status status = ethd_text_read(path, ETHD_STUDY_TEXT_MAX, &text, &length, message);
   if (!status && !folder) status = ethd__no_memory(message, path);
-  if (!status) status = ethd__protocol_parse(text, length, path, folder, out, message);
-  free(text);
-  free(folder);
-  return status;
+  return status ? status : ethd__protocol_parse(text, length, path, folder, out, message);
 }
 
 /* ---- the file of conditions ---- */

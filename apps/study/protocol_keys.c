@@ -130,7 +130,8 @@ static ethd_status set_words(const ethd__entry *e, const key_row *row, void *at)
   bool (*is_word)(const char *) = row && !strcmp(row->section, "outcomes") ? is_any : ethd__file_word;
   ethd__word_list *words = at;
   ethd_status status = ETHD_OK;
-  char *list = strdup(e->key->value), *rest = list, *word;
+  ETHD__FREED char *list = strdup(e->key->value);
+  char *rest = list, *word;
   if (!list) return ethd__entry_refuse(e, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   ethd__word_list_free(words);
   words->line = e->key->line;
@@ -139,7 +140,6 @@ static ethd_status set_words(const ethd__entry *e, const key_row *row, void *at)
     word[strcspn(word, " \t")] = 0;
     status = is_word(word) ? add_word(e, words, word) : found(e, "word,word.. of letters, digits, _ . + -");
   }
-  free(list);
   return status;
 }
 

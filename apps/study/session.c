@@ -40,9 +40,8 @@ static ethd_status have_tap(ethd__sitting *s, const char *id, const ethd__turn *
   snprintf(name, sizeof name, "%s-%02zu-%03" PRIu32, id, turn->number, turn->attempt);
   snprintf(words, sizeof words, "%s %s %s", name, p->strategies.word[turn->block.strategy],
            p->speeds.word[turn->block.speed]);
-  char *folder = ethd__folder_path(s->folder->path, ETHD_STUDY_RECORDINGS);
+  ETHD__FREED char *folder = ethd__folder_path(s->folder->path, ETHD_STUDY_RECORDINGS);
   if (p->record) status = ethd__tap_keep(folder, name, s->folder->loaded.config, taken, words, message);
-  free(folder);
   return status ? status : ethd__tap_put(&s->store, 0, taken, message);
 }
 

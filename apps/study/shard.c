@@ -2,7 +2,6 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
@@ -40,12 +39,10 @@ static ethd_status keep(shard_work *w, size_t point, const char *id, const ethd_
   snprintf(name, sizeof name, "%zu-%s-%02zu-%03" PRIu32, point, id, turn->number, turn->attempt);
   snprintf(words, sizeof words, "%s %s %s", name, p->strategies.word[turn->block.strategy],
            p->speeds.word[turn->block.speed]);
-  char *folder = ethd__folder_path(w->folder->path, below), *there = ethd__folder_path(folder, name);
+  ETHD__FREED char *folder = ethd__folder_path(w->folder->path, below), *there = ethd__folder_path(folder, name);
   ethd_status status = ETHD_OK;
   if (!ethd__file_taken(there))
     status = ethd__tap_keep(folder, name, w->folder->loaded.config, taken, words, w->message);
-  free(there);
-  free(folder);
   return status;
 }
 

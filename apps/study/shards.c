@@ -1,7 +1,6 @@
 #include <dirent.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "study/merge.h"
@@ -45,7 +44,7 @@ static ethd_status count_shards(const ethd__folder *folder, uint32_t *count, cha
 static ethd_status check_shard(const ethd__folder *folder, const ethd__shard *shard, const char *name, char *message) {
   ethd__study_store store;
   uint64_t done, units = ethd__shard_units(&folder->protocol, shard);
-  char *path = ethd__folder_path(folder->path, name);
+  ETHD__FREED char *path = ethd__folder_path(folder->path, name);
   struct stat info;
   ethd_status status = ETHD_OK;
   if (ethd__file_look_at(path, &info))
@@ -62,7 +61,6 @@ static ethd_status check_shard(const ethd__folder *folder, const ethd__shard *sh
                          "/%" PRIu32 " goes on",
                          path, done, units, shard->index, shard->count);
   }
-  free(path);
   return status;
 }
 
@@ -79,10 +77,9 @@ static ethd_status add(const void *self, ethd__study_store *out, char message[ET
     const ethd__shard shard = {.index = i, .count = all->count};
     char name[ETHD_SHARD_NAME_MAX];
     ethd__shard_name(&shard, name);
-    char *path = ethd__folder_path(all->folder->path, name);
+    ETHD__FREED char *path = ethd__folder_path(all->folder->path, name);
     status = check_shard(all->folder, &shard, name, message);
     if (!status) status = ethd__store_add(out, path, message);
-    free(path);
   }
   return status;
 }

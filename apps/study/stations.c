@@ -55,7 +55,7 @@ static ethd_status take_owners(station *s, size_t number, const char *const *fol
 }
 
 ethd_status ethd__stations_fit(const char *const *folders, size_t count, char message[ETHD_MESSAGE_MAX]) {
-  size_t *owner = calloc(ETHD_STUDY_SESSION_PEOPLE, sizeof *owner);
+  ETHD__FREED size_t *owner = calloc(ETHD_STUDY_SESSION_PEOPLE, sizeof *owner);
   char hash[ETHD_SHA256_TEXT] = "";
   size_t files;
   ethd_status status = owner ? ETHD_OK : ethd__no_memory(message, NULL);
@@ -74,7 +74,6 @@ ethd_status ethd__stations_fit(const char *const *folders, size_t count, char me
       status = take_owners(&s, i, folders, owner, message);
     close_station(&s);
   }
-  free(owner);
   for (size_t i = 0; !status && i < count; i++) status = ethd__sums_check(folders[i], &files, message);
   return status > 0 ? ETHD_E_FILE : status; /* a folder without sums is refused, too */
 }
@@ -89,30 +88,25 @@ typedef struct copying {
 
 static void make_parents(const char *out, const char *path) {
   for (const char *slash = strchr(path, '/'); slash; slash = strchr(slash + 1, '/')) {
-    char *within = strndup(path, (size_t)(slash - path));
+    ETHD__FREED char *within = strndup(path, (size_t)(slash - path));
     if (!within) ethd__fail_memory();
-    char *folder = ethd__folder_path(out, within);
+    ETHD__FREED char *folder = ethd__folder_path(out, within);
     (void)ethd__file_make_folder(folder); /* there already, or the file in it says why not */
-    free(folder);
-    free(within);
   }
 }
 
 static ethd_status copy_file(void *user, const char *path) {
   const copying *c = user;
   size_t length;
-  char *text;
+  ETHD__FREED char *text = NULL;
   bool of_a_tap = !strncmp(path, ETHD_STUDY_RECORDINGS "/", sizeof ETHD_STUDY_RECORDINGS);
   if (ethd__sums_grows(path) || (!of_a_tap && !c->first)) return ETHD_OK;
-  char *from = ethd__folder_path(c->from, path), *to = ethd__folder_path(c->out, path);
+  ETHD__FREED char *from = ethd__folder_path(c->from, path), *to = ethd__folder_path(c->out, path);
   ethd_status status = ethd_text_read(from, FILE_MAX, &text, &length, c->message);
   if (!status) {
     make_parents(c->out, path);
     status = ethd_text_write(to, text, length, c->message);
-    free(text);
   }
-  free(from);
-  free(to);
   return status;
 }
 
@@ -120,13 +114,13 @@ static ethd_status copy_file(void *user, const char *path) {
 
 /* Says in the store that what follows comes from this folder's. */
 static ethd_status put_origin(ethd__study_store *out, const char *folder, const char *path, char *message) {
-  char sum[ETHD_SHA256_TEXT], *detail;
+  char sum[ETHD_SHA256_TEXT];
+  ETHD__FREED char *detail = NULL;
   ethd_status status = ethd__sum_of_file(path, sum, message);
   if (status) return status;
   if (asprintf(&detail, "%s %s", folder, sum) < 0) return ethd__no_memory(message, NULL);
   sqlite3_stmt *insert = ethd__store_query(out, "INSERT INTO event (utc, event, detail) VALUES ('', 'merged', ?)");
   sqlite3_bind_text(insert, 1, detail, -1, SQLITE_TRANSIENT);
-  free(detail);
   return ethd__store_run(out, insert, message);
 }
 
@@ -139,10 +133,9 @@ static ethd_status add(const void *self, ethd__study_store *out, char message[ET
   const origins *all = self;
   ethd_status status = ETHD_OK;
   for (size_t i = 0; !status && i < all->count; i++) {
-    char *path = ethd__folder_path(all->folder[i], ETHD_STUDY_STORE);
+    ETHD__FREED char *path = ethd__folder_path(all->folder[i], ETHD_STUDY_STORE);
     status = put_origin(out, all->folder[i], path, message);
     if (!status) status = ethd__store_add(out, path, message);
-    free(path);
   }
   return status;
 }

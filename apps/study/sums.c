@@ -95,23 +95,22 @@ static bool left_out(const char *name, int depth) {
 
 /* All files below folder/within; with `odd` also links, pipes and the like. */
 static void walk(const char *folder, const char *within, int depth, bool odd, summed_list *out) {
-  char *path = ethd__folder_path(folder, within);
+  ETHD__FREED char *path = ethd__folder_path(folder, within);
   DIR *open_folder = ethd__file_list(path);
   const struct dirent *entry;
   struct stat what;
   while (open_folder && (entry = readdir(open_folder))) {
     if (left_out(entry->d_name, depth) || strchr(entry->d_name, '\n')) continue;
-    char *inner = ethd__folder_path(within, entry->d_name), *whole = ethd__folder_path(folder, inner);
+    char *inner = ethd__folder_path(within, entry->d_name);
+    ETHD__FREED char *whole = ethd__folder_path(folder, inner);
     bool there = ethd__file_look_at(whole, &what) == 0;
     if (there && S_ISDIR(what.st_mode) && depth < DEEPEST) walk(folder, inner, depth + 1, odd, out);
     if (there && (S_ISREG(what.st_mode) || (odd && !S_ISDIR(what.st_mode))))
       add(out, inner, "");
     else
       free(inner);
-    free(whole);
   }
   if (open_folder) closedir(open_folder);
-  free(path);
 }
 
 /* ---- the file ---- */
@@ -122,7 +121,7 @@ static bool is_within(const char *path) {
 
 static ethd_status read_list(const char *path, summed_list *out, char *message) {
   size_t length, number = 0;
-  char *text;
+  ETHD__FREED char *text = NULL;
   *out = (summed_list){0};
   ethd_status status = ethd_text_read(path, LIST_MAX, &text, &length, message);
   if (status) return status;
@@ -137,7 +136,6 @@ static ethd_status read_list(const char *path, summed_list *out, char *message) 
       add(out, strdup(line + n + 2), line);
     }
   }
-  free(text);
   sort(out);
   return status;
 }
@@ -154,11 +152,11 @@ static ethd_status put_list(const char *folder, const char *path, const summed_l
   ethd_status status = ethd_replace_begin(path, &replace, message);
   if (status) return status;
   for (size_t i = 0; !status && i < list->count; i++) {
-    char sum[ETHD_SHA256_TEXT], *whole = ethd__folder_path(folder, list->file[i].path);
+    char sum[ETHD_SHA256_TEXT];
+    ETHD__FREED char *whole = ethd__folder_path(folder, list->file[i].path);
     snprintf(sum, sizeof sum, "%s", list->file[i].sum);
     if (!*sum) status = ethd__sum_of_file(whole, sum, message);
     fprintf(replace.file, "%s  %s\n", sum, list->file[i].path);
-    free(whole);
   }
   if (!status) return ethd_replace_commit(&replace, message);
   ethd_replace_abandon(&replace);
@@ -176,7 +174,7 @@ static void take_missing(const summed_list *before, summed_list *now) {
 }
 
 ethd_status ethd__sums_write(const char *folder, char message[ETHD_MESSAGE_MAX]) {
-  char *path = ethd__folder_path(folder, ETHD_STUDY_SUMS);
+  ETHD__FREED char *path = ethd__folder_path(folder, ETHD_STUDY_SUMS);
   summed_list before = {0}, now = {0};
   ethd_status status = ethd__file_taken(path) ? read_list(path, &before, message) : ETHD_OK;
   if (!status) {
@@ -191,7 +189,6 @@ ethd_status ethd__sums_write(const char *folder, char message[ETHD_MESSAGE_MAX])
   }
   free_list(&before);
   free_list(&now);
-  free(path);
   return status;
 }
 
@@ -210,19 +207,18 @@ static void note(fault *f, const char *path, const char *what) {
 static void compare(const char *folder, const summed_list *list, const summed_list *there, fault *f) {
   char sum[ETHD_SHA256_TEXT], unsaid[ETHD_MESSAGE_MAX];
   for (size_t i = 0; i < list->count; i++) {
-    char *whole = ethd__folder_path(folder, list->file[i].path);
+    ETHD__FREED char *whole = ethd__folder_path(folder, list->file[i].path);
     if (ethd__sum_of_file(whole, sum, unsaid))
       note(f, list->file[i].path, "is missing or can't be read");
     else if (strcmp(sum, list->file[i].sum))
       note(f, list->file[i].path, "isn't what it was");
-    free(whole);
   }
   for (size_t i = 0; i < there->count; i++)
     if (!find(list, there->file[i].path)) note(f, there->file[i].path, "isn't listed");
 }
 
 ethd_status ethd__sums_check(const char *folder, size_t *files, char message[ETHD_MESSAGE_MAX]) {
-  char *path = ethd__folder_path(folder, ETHD_STUDY_SUMS);
+  ETHD__FREED char *path = ethd__folder_path(folder, ETHD_STUDY_SUMS);
   summed_list list = {0}, there = {0};
   fault f = {0};
   *files = 0;
@@ -242,17 +238,15 @@ ethd_status ethd__sums_check(const char *folder, size_t *files, char message[ETH
   }
   free_list(&list);
   free_list(&there);
-  free(path);
   return status;
 }
 
 ethd_status ethd__sums_each(const char *folder, ethd_status (*each)(void *user, const char *path), void *user,
                             char message[ETHD_MESSAGE_MAX]) {
-  char *path = ethd__folder_path(folder, ETHD_STUDY_SUMS);
+  ETHD__FREED char *path = ethd__folder_path(folder, ETHD_STUDY_SUMS);
   summed_list list;
   ethd_status status = read_list(path, &list, message);
   for (size_t i = 0; !status && i < list.count; i++) status = each(user, list.file[i].path);
   free_list(&list);
-  free(path);
   return status;
 }

@@ -182,7 +182,7 @@ static void print_row(FILE *file, sqlite3_stmt *row) {
 
 static ethd_status print_table(FILE *file, ethd__study_store *store, const ethd__folder *folder,
                                ethd__study_table table, char *message) {
-  char *header =
+  ETHD__FREED char *header =
       folder->simulated ? ethd__simulation_header(&folder->protocol) : ethd__table_header(table, &folder->protocol);
   ethd__printed sql;
   select_rows[table](ethd__print_begin(&sql), folder);
@@ -191,7 +191,6 @@ static ethd_status print_table(FILE *file, ethd__study_store *store, const ethd_
   add_functions(store, &view);
   sqlite3_stmt *row = ethd__store_query(store, ethd__print_end(&sql));
   while (ethd__store_next(row)) print_row(file, row);
-  free(header);
   free(sql.text);
   return ethd__store_end(store, row, message);
 }
@@ -213,10 +212,9 @@ static ethd_status write_table(const ethd__folder *folder, ethd__study_store *st
                                char *message) {
   char name[32];
   snprintf(name, sizeof name, "%s.csv", ethd__table_names[table]);
-  char *path = ethd__folder_path(folder->path, name);
+  ETHD__FREED char *path = ethd__folder_path(folder->path, name);
   ethd_replace replace;
   ethd_status status = ethd_replace_begin(path, &replace, message);
-  free(path);
   if (status) return status;
   status = print_table(replace.file, store, folder, table, message);
   if (!status) return ethd_replace_commit(&replace, message);

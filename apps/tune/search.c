@@ -126,7 +126,7 @@ static ethd_status confirm(ethd__tune_search *s, ethd__tune_round *from, const e
 static ethd_status fill_next(ethd__tune_search *s, int round, char *message) {
   ethd__tune_round *r = &s->rounds[round];
   size_t parents;
-  const ethd__tune_entry **order = ranked(r - 1, &parents);
+  ETHD__FREED const ethd__tune_entry **order = ranked(r - 1, &parents);
   if (!order) return ethd__no_memory(message, NULL);
   ethd_status status = ETHD_OK;
   if (round == ETHD_TUNE_ROUNDS - 1)
@@ -144,7 +144,6 @@ static ethd_status fill_next(ethd__tune_search *s, int round, char *message) {
       if (ethd__score_keeps(s->rig, &p)) add(r, &p, true);
     }
   }
-  free(order);
   return status;
 }
 

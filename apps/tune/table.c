@@ -1,7 +1,6 @@
 #include "tune/table.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "check/report.h"
@@ -120,9 +119,8 @@ static void put_entry(ethd_csv_out *csv, const ethd__tune_space *space, const et
 
 ethd_status ethd__tune_csv(const ethd__tune_search *s, const ethd__tune_entry *choice, const char *path,
                            char message[ETHD_MESSAGE_MAX]) {
-  char *header = header_of(s->rig->space);
+  ETHD__FREED char *header = header_of(s->rig->space);
   ethd_csv_out *csv = ethd_csv_create(path, header, message);
-  free(header);
   if (!csv) return ETHD_E_FILE;
   for (int round = 0; round < ETHD_TUNE_ROUNDS; round++)
     for (size_t i = 0; i < s->rounds[round].count; i++) {

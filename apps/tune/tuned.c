@@ -42,12 +42,10 @@ static bool is_path(const char *section, const char *key) {
 
 /* Writes the whole path of a file of the folder, and any other value as it is. */
 static void put_path(rewriting *w, const char *value, size_t length) {
-  char *name = strndup(value, length), *path = name ? ethd__path_join(w->space->config->folder, name) : NULL;
-  char *whole = path && !access(path, F_OK) ? realpath(path, NULL) : NULL;
+  ETHD__FREED char *name = strndup(value, length),
+                   *path = name ? ethd__path_join(w->space->config->folder, name) : NULL;
+  ETHD__FREED char *whole = path && !access(path, F_OK) ? realpath(path, NULL) : NULL;
   fputs(whole ? whole : name ? name : "", w->out);
-  free(whole);
-  free(path);
-  free(name);
 }
 
 /* Writes a line KEY = VALUE ; comment with a new value. */

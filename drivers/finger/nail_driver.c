@@ -49,9 +49,8 @@ static bool means(const void *sensor, const uint16_t counts[ETHD__FRAME_SENSORS]
 
 static ethd_status load(const ethd_device_def *def, const ethd_setting *file, nail_plate *n, char *message) {
   ethd__calibration calibration;
-  char *path = ethd__path_join(def->folder, file->value);
+  ETHD__FREED char *path = ethd__path_join(def->folder, file->value);
   ethd_status status = path ? ethd__calibration_load(path, &calibration, message) : ethd__no_memory(message, NULL);
-  free(path);
   if (status) return status;
   n->sensor = calibration.sensors[n->index];
   if (!isnan(n->sensor.dark)) return ETHD_OK;

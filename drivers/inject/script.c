@@ -235,14 +235,11 @@ ethd_status ethd__script_parse(const char *text, size_t length, const char *name
 }
 
 ethd_status ethd__script_load(const char *path, ethd__script_of of, ethd__script *out, char message[ETHD_MESSAGE_MAX]) {
-  char *text;
+  ETHD__FREED char *text = NULL;
   size_t length;
   *out = (ethd__script){.count = 0};
   ethd_status status = ethd_text_read(path, ETHD_INJECT_BYTES_MAX, &text, &length, message);
-  if (status) return status;
-  status = ethd__script_parse(text, length, path, of, out, message);
-  free(text);
-  return status;
+  return status ? status : ethd__script_parse(text, length, path, of, out, message);
 }
 
 void ethd__script_free(ethd__script *script) {

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "proximity_ring/calibration.h"
@@ -190,13 +189,10 @@ ethd_status ethd__calibration_parse(const char *text, size_t length, const char 
 }
 
 ethd_status ethd__calibration_load(const char *path, ethd__calibration *out, char message[ETHD_MESSAGE_MAX]) {
-  char *text;
+  ETHD__FREED char *text = NULL;
   size_t length;
   ethd_status status = ethd_text_read(path, ETHD_INI_BYTES_MAX, &text, &length, message);
-  if (status) return status;
-  status = ethd__calibration_parse(text, length, path, out, message);
-  free(text);
-  return status;
+  return status ? status : ethd__calibration_parse(text, length, path, out, message);
 }
 
 /* ---- writing ---- */

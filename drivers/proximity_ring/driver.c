@@ -139,11 +139,9 @@ static ethd_status load_calibration(const ethd_device_def *def, ring *r, char *m
   const ethd_setting *s = r->settings.calibration;
   r->receiver.calibration = ethd__calibration_default();
   if (!s) return ETHD_OK;
-  char *path = ethd__path_join(def->folder, s->value);
+  ETHD__FREED char *path = ethd__path_join(def->folder, s->value);
   if (!path) return ethd__no_memory(message, NULL);
-  ethd_status status = ethd__calibration_load(path, &r->receiver.calibration, message);
-  free(path);
-  return status;
+  return ethd__calibration_load(path, &r->receiver.calibration, message);
 }
 
 static ethd_status prepare(const ethd_device_def *def, ring *r, char *message) {

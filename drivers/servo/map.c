@@ -1,7 +1,6 @@
 #include "servo/map.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "servo/map_parts.h"
@@ -130,11 +129,8 @@ ethd_status ethd__servo_map_parse(const char *text, size_t length, const char *n
 
 ethd_status ethd__servo_map_load(const char *path, const char *name, ethd__servo_map *out,
                                  char message[ETHD_MESSAGE_MAX]) {
-  char *text;
+  ETHD__FREED char *text = NULL;
   size_t length;
   ethd_status status = ethd_text_read(path, ETHD__SERVO_BYTES_MAX, &text, &length, message);
-  if (status) return status;
-  status = ethd__servo_map_parse(text, length, name, out, message);
-  free(text);
-  return status;
+  return status ? status : ethd__servo_map_parse(text, length, name, out, message);
 }

@@ -53,10 +53,9 @@ static ethd_status read_settings(const ethd_device_def *def, settings *out, char
 }
 
 static ethd_status load_map(const ethd_device_def *def, const settings *s, ethd__servo_map *map, char *message) {
-  char *path = ethd__path_join(def->folder, s->map->value);
+  ETHD__FREED char *path = ethd__path_join(def->folder, s->map->value);
   if (!path) return ethd__no_memory(message, NULL);
   ethd_status status = ethd__servo_map_load(path, s->map->value, map, message);
-  free(path);
   if (status || !s->port) return status;
   if (strlen(s->port->value) >= sizeof map->port)
     return ethd__say(message, ETHD_E_RANGE, "%s:%d: device.port: too long", file(def), s->port->line);

@@ -28,12 +28,11 @@ typedef struct device {
 
 static ethd_status load_plant(const ethd_device_def *def, const ethd_setting *setting, ethd_plant *out, char *message) {
   const char *plant = setting ? setting->value : ETHD__PLANT;
-  char *path = ethd__plant_path(plant, def->folder);
+  ETHD__FREED char *path = ethd__plant_path(plant, def->folder);
   ethd_status status = path ? ethd_plant_load(path, out, message) : ethd__no_memory(message, NULL);
   if (path && status == ETHD_E_FILE && !strpbrk(plant, "/.") && access(path, F_OK))
     (void)ethd__say(message, status, "%s: %s; ETHD_DATA_DIR may name the folder of the installed plants", path,
                     strerror(errno));
-  free(path);
   return status;
 }
 

@@ -24,13 +24,12 @@ static ethd_status fill(const ethd__key_file *file, ethd_plant *out) {
 }
 
 ethd_status ethd__plant_read(const char *path, const char *name, ethd_plant *out, char message[ETHD_MESSAGE_MAX]) {
-  char *text;
+  ETHD__FREED char *text = NULL;
   size_t length;
   ethd_ini ini;
   ethd_status status = ethd_text_read(path, BYTES_MAX, &text, &length, message);
   if (status) return status;
   status = ethd_ini_parse(text, length, name, NULL, NULL, &ini, message);
-  free(text);
   if (status) return status;
   status = fill(&(ethd__key_file){&ini, name, message}, out);
   ethd_ini_free(&ini);
@@ -49,12 +48,9 @@ static char *came_with_programs(const char *file) {
   char program[PATH_MAX];
   ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
   program[length > 0 ? length : 0] = 0;
-  char *bin = ethd__path_folder(program);
-  char *share = bin ? ethd__path_join(bin, "../share/ethd") : NULL;
-  char *path = share ? ethd__path_join(share, file) : NULL;
-  free(share);
-  free(bin);
-  return path;
+  ETHD__FREED char *bin = ethd__path_folder(program);
+  ETHD__FREED char *share = bin ? ethd__path_join(bin, "../share/ethd") : NULL;
+  return share ? ethd__path_join(share, file) : NULL;
 }
 
 char *ethd__plant_path(const char *plant, const char *folder) {

@@ -2,7 +2,6 @@
 
 #include <dlfcn.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "settings/config_parts.h"
@@ -120,9 +119,9 @@ static void foreign(const char *what) {
 }
 
 static ethd_status load(const char *path, ethd_driver *out, char *what) {
-  char *own = strchr(path, '/') ? NULL : ethd__path_join(".", path); /* else dlopen searches the libraries' folders */
+  ETHD__FREED char *own =
+      strchr(path, '/') ? NULL : ethd__path_join(".", path); /* else dlopen searches the libraries' folders */
   void *handle = dlopen(own ? own : path, RTLD_NOW | RTLD_LOCAL);
-  free(own);
   if (!handle) return ethd__say(what, ETHD_E_LOAD, "%s", dlerror());
   const ethd_driver *table = dlsym(handle, "ethd_driver_plugin");
   ethd_status status = table ? ethd__driver_check(table, what)

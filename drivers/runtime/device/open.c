@@ -46,11 +46,9 @@ static const ethd_driver *find(const ethd_driver *const *from, const char *name,
 static ethd_status load_driver(const naming *n, uint32_t i, const char *name, size_t length) {
   char what[ETHD_MESSAGE_MAX], quote[ETHD_QUOTE_MAX];
   ethd_device *s = n->device;
-  char *given = strndup(name + strlen(ETHD_DRIVER_FILE), length - strlen(ETHD_DRIVER_FILE));
-  char *path = given ? ethd__path_join(n->def->folder, given) : NULL;
+  ETHD__FREED char *given = strndup(name + strlen(ETHD_DRIVER_FILE), length - strlen(ETHD_DRIVER_FILE));
+  ETHD__FREED char *path = given ? ethd__path_join(n->def->folder, given) : NULL;
   ethd_status status = path ? ethd__driver_load(path, &s->at[i].own, what) : ethd__no_memory(what, NULL);
-  free(path);
-  free(given);
   s->at[i].driver = &s->at[i].own;
   s->at[i].is_foreign = true;
   if (!status) return ETHD_OK;
@@ -210,15 +208,13 @@ static ethd_status open_with(ethd_device *s, uint32_t i, const ethd_device_def *
 }
 
 static ethd_status open_one(ethd_device *s, uint32_t i, const ethd_device_def *def, char *message) {
-  ethd_setting *settings = calloc(def->setting_count + 1, sizeof *settings);
+  ETHD__FREED ethd_setting *settings = calloc(def->setting_count + 1, sizeof *settings);
   if (!settings) return ethd__no_memory(message, NULL);
   ethd_device_def own = *def;
   own.settings = settings;
   own.setting_count = own_settings(s, i, def, settings);
   ethd_status status = check_twice(&own, message);
-  if (!status) status = open_with(s, i, &own, message);
-  free(settings);
-  return status;
+  return status ? status : open_with(s, i, &own, message);
 }
 
 static ethd_status read_hang_time(ethd_device *s, const ethd_device_def *def, char *message) {
@@ -285,12 +281,11 @@ static ethd_status open_all(const naming *n, const char *ids) {
 /* Loads the script, which happens before anything is opened. */
 static ethd_status load_script(const naming *n, const char *file) {
   ethd__script script = {.count = 0};
-  char *path = ethd__path_join(n->def->folder, file);
+  ETHD__FREED char *path = ethd__path_join(n->def->folder, file);
   if (!path) return ethd__no_memory(n->message, NULL);
   const bool in_space = n->device->in_space;
   const double period = in_space ? n->def->space->period : n->def->setup->period;
   ethd_status status = ethd__script_load(path, (ethd__script_of){period, in_space}, &script, n->message);
-  free(path);
   if (status) return status;
   n->device->inject = ethd__inject_create(&script, in_space);
   if (n->device->inject) return ETHD_OK;

@@ -26,13 +26,12 @@ static size_t read_at(int fd, void *to, size_t most, size_t offset) {
 }
 
 static ethd_status read_header(ethd__npy_reader *r, size_t size, char *message) {
-  char *text = malloc(HEADER_MOST);
+  ETHD__FREED char *text = malloc(HEADER_MOST);
   ethd__npy_shape *shape = &r->shape;
   if (!text) return ethd__no_memory(message, r->path);
   size_t wanted = size < HEADER_MOST ? size : HEADER_MOST, n = read_at(r->fd, text, wanted, 0);
   ethd_status status = errno ? ethd__say(message, ETHD_E_FILE, "%s: %s", r->path, strerror(errno))
                              : ethd__npy_parse(text, n < wanted ? n : size, r->path, shape, message);
-  free(text);
   if (!status && ethd__file_has_hole(r->fd, (int64_t)(shape->data + shape->count * shape->row_bytes)))
     status = ethd__say(message, ETHD_E_SYNTAX, "%s: has a hole: some of its %zu rows were never written", r->path,
                        shape->count);

@@ -75,18 +75,14 @@ char *ethd__record_config_text(const ethd_config *config) {
 /* ---- writing ---- */
 
 static ethd_status write_file(const char *folder, const char *name, const char *text, char *message) {
-  char *path = text ? ethd__path_join(folder, name) : NULL;
+  ETHD__FREED char *path = text ? ethd__path_join(folder, name) : NULL;
   if (!path) return ethd__no_memory(message, folder);
-  ethd_status status = ethd_text_write(path, text, strlen(text), message);
-  free(path);
-  return status;
+  return ethd_text_write(path, text, strlen(text), message);
 }
 
 static ethd_status write_config(const char *folder, const ethd_config *config, char *message) {
-  char *text = ethd__record_config_text(config);
-  ethd_status status = write_file(folder, ETHD_RECORDING_CONFIG, text, message);
-  free(text);
-  return status;
+  ETHD__FREED char *text = ethd__record_config_text(config);
+  return write_file(folder, ETHD_RECORDING_CONFIG, text, message);
 }
 
 /* Reserves room for the next row of events.csv on a full disk, if the file system can do so. */
@@ -106,14 +102,12 @@ static ethd_status open_events(const char *path, ethd_recording *recording, char
 
 /* The ticks' file comes first: it marks a folder as a recording, which may be replaced. */
 static ethd_status open_files(const char *folder, ethd_recording *recording, char *message) {
-  char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);
-  char *events = ethd__path_join(folder, ETHD_RECORDING_EVENTS);
+  ETHD__FREED char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);
+  ETHD__FREED char *events = ethd__path_join(folder, ETHD_RECORDING_EVENTS);
   ethd_status status = ticks && events ? ETHD_OK : ethd__no_memory(message, folder);
   if (!status)
     status = ethd_npy_create(ticks, recording->front->columns, recording->front->row_bytes, &recording->ticks, message);
   if (!status) status = open_events(events, recording, message);
-  free(ticks);
-  free(events);
   if (status) return status;
   fputs(ETHD_RECORDING_HEADER "\n", recording->events);
   fflush(recording->events);

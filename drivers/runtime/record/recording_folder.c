@@ -1,4 +1,3 @@
-#include <stdlib.h>
 
 #include "record/recording_parts.h"
 #include "settings/config_parts.h"
@@ -25,17 +24,15 @@ static bool is_input(const char *folder, const ethd_config *config) {
   bool held =
       (config->path && ethd__recording_holds(folder, config->path)) || (scene && ethd__recording_holds(folder, scene));
   for (uint32_t i = 0; !held && i < config->setting_count; i++) {
-    char *path = ethd__path_join(config->folder, config->settings[i].value);
+    ETHD__FREED char *path = ethd__path_join(config->folder, config->settings[i].value);
     held = path && ethd__recording_holds(folder, path);
-    free(path);
   }
   return held;
 }
 
 static ethd_status remove_earlier(const char *folder, char *message) {
-  char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);
+  ETHD__FREED char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);
   bool is_recording = ticks && ethd__file_taken(ticks);
-  free(ticks);
   if (!is_recording)
     return ethd__say(message, ETHD_E_ARGUMENT,
                      "%s: holds files named like those of a recording, but no recording; nothing is replaced", folder);

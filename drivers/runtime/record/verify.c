@@ -35,10 +35,9 @@ typedef struct verification {
 /* ---- opening ---- */
 
 static ethd_status open_config(verification *r) {
-  char *path = ethd__path_join(r->folder, ETHD_RECORDING_CONFIG);
+  ETHD__FREED char *path = ethd__path_join(r->folder, ETHD_RECORDING_CONFIG);
   if (!path) return ethd__no_memory(r->message, NULL);
   ethd_status status = (r->plugins ? ethd_config_load : ethd_config_load_received)(path, &r->config, r->message);
-  free(path);
   if (status) return status;
   r->front = ethd__front_of(r->config);
   r->replayed = ethd__controller_of(r->config);

@@ -187,16 +187,13 @@ static ethd_status parse(config_reading r, const ethd_config_source *s, ethd_con
 }
 
 static ethd_status load(config_reading r, ethd_config_source s, ethd_config **out) {
-  char *text;
+  ETHD__FREED char *text = NULL;
   ethd_status status = ethd_text_read(s.path, ETHD_INI_BYTES_MAX, &text, &s.length, r.message);
   if (status) return status;
-  char *folder = ethd__path_folder(s.path);
+  ETHD__FREED char *folder = ethd__path_folder(s.path);
   s.text = text;
   s.folder = folder;
-  status = folder ? parse(r, &s, out) : no_memory(&r);
-  free(folder);
-  free(text);
-  return status;
+  return folder ? parse(r, &s, out) : no_memory(&r);
 }
 
 static ethd_status check_sizes(const ethd_config_source *source, ethd_error *error) {
@@ -214,7 +211,8 @@ ethd_status ethd_config_make(const ethd_config_source *source, ethd_config **out
   if (status) return ethd_error_text(NULL, &error, message), status;
   ethd_config_source s = *source;
   const config_reading r = {.received = s.received != 0, .name = s.path ? s.path : "configuration", .message = message};
-  char *folder = s.path && !s.text ? ethd__path_folder(s.path) : strdup(s.folder && *s.folder ? s.folder : ".");
+  ETHD__FREED char *folder =
+      s.path && !s.text ? ethd__path_folder(s.path) : strdup(s.folder && *s.folder ? s.folder : ".");
   ethd__received received;
   if (!folder) return no_memory(&r);
   if (r.received) ethd__received_enter(&received, folder);
@@ -225,7 +223,6 @@ ethd_status ethd_config_make(const ethd_config_source *source, ethd_config **out
     status = parse(r, &s, out);
   }
   if (r.received) ethd__received_leave(&received);
-  free(folder);
   return status;
 }
 

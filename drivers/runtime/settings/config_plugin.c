@@ -151,7 +151,7 @@ ethd_status ethd__config_plugin(ethd__config *whole, const ethd__key *key) {
   if (whole->received)
     return ethd__key_refuse(key, ETHD_E_LOAD, "%s is a program from outside of this folder; --plugins lets it run",
                             key->value);
-  char *joined = ethd__path_join(whole->config.folder, key->value);
+  ETHD__FREED char *joined = ethd__path_join(whole->config.folder, key->value);
   char *path = joined ? realpath(joined, NULL) : NULL;
   ethd_status status;
   if (!joined)
@@ -160,7 +160,6 @@ ethd_status ethd__config_plugin(ethd__config *whole, const ethd__key *key) {
     status = ethd__key_refuse(key, ETHD_E_FILE, "%s: %s", joined, strerror(errno));
   else
     status = open_plugin(&whole->config, path, key);
-  free(joined);
   if (status) free(path);
   return status ? status : add_file(&whole->config, path, key);
 }

@@ -13,9 +13,9 @@
 /* Returns the absolute path of a driver's file, so that it is valid in a recording's folder too; NULL: no memory. A
    missing file is reported when it is opened. */
 static char *whole_path(const ethd__config *c, const char *name, size_t length) {
-  char *relative = strndup(name, length), *joined = relative ? ethd__path_join(c->config.folder, relative) : NULL;
+  ETHD__FREED char *relative = strndup(name, length);
+  char *joined = relative ? ethd__path_join(c->config.folder, relative) : NULL;
   char *path = joined ? realpath(joined, NULL) : NULL;
-  free(relative);
   if (!path) return joined;
   free(joined);
   return path;

@@ -48,10 +48,8 @@ static ethd_status load(const ethd_device_def *def, replay *r, char *message) {
   if (!folder)
     return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.folder: the replay needs the folder of a recording",
                      def->file ? def->file : "the defaults");
-  char *path = ethd__path_join(def->folder, folder->value);
-  status = path ? ethd__tape_load(path, &r->tape, message) : ethd__no_memory(message, NULL);
-  free(path);
-  return status;
+  ETHD__FREED char *path = ethd__path_join(def->folder, folder->value);
+  return path ? ethd__tape_load(path, &r->tape, message) : ethd__no_memory(message, NULL);
 }
 
 static void replay_close(void *device) {

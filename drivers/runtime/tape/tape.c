@@ -53,9 +53,8 @@ static void take_change(const ethd__record_events *events, ethd__tape *tape) {
 
 static ethd_status take_events(const char *folder, ethd__tape *tape, char *message) {
   ethd__record_events events = {0};
-  char *path = ethd__path_join(folder, ETHD_RECORDING_EVENTS);
+  ETHD__FREED char *path = ethd__path_join(folder, ETHD_RECORDING_EVENTS);
   ethd_status status = path ? ethd__record_events_read(path, &events, message) : no_memory(folder, message);
-  free(path);
   if (status) return status;
   take_change(&events, tape);
   status = take_device(&events, tape, message);
@@ -68,10 +67,9 @@ ethd_status ethd__tape_load(const char *folder, ethd__tape *out, char message[ET
   void *rows = NULL;
   *out = (ethd__tape){.count = 0};
   ethd__received_enter(&received, folder);
-  char *path = ethd__path_join(folder, ETHD_RECORDING_TICK);
+  ETHD__FREED char *path = ethd__path_join(folder, ETHD_RECORDING_TICK);
   ethd_status status = path ? ethd_npy_read(path, ethd_trace_columns, sizeof(ethd_trace), &rows, &out->count, message)
                             : no_memory(folder, message);
-  free(path);
   out->rows = rows;
   if (!status && !out->count) status = ethd__say(message, ETHD_E_RANGE, "%s: the recording has no ticks", folder);
   if (!status) status = take_events(folder, out, message);

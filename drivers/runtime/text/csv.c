@@ -245,14 +245,13 @@ static ethd_status check_text(const table *r) {
 static ethd_status parse(const char *text, size_t length, const char *name, const char *const *wanted, bool words,
                          ethd_csv *out, char *message) {
   table r = {.rest = text, .text_end = text + length, .name = name, .words = words, .message = message};
-  layout *l = calloc(1, sizeof *l);
+  ETHD__FREED layout *l = calloc(1, sizeof *l);
   *out = (ethd_csv){.path = strdup(name)};
   ethd_status status = l && out->path ? check_text(&r) : no_memory(&r);
   if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) r.rest += 3;
   if (!status) status = read_header(&r, l, wanted, out);
   if (!status) status = read_rows(&r, l, out);
   for (size_t i = 0; l && i < l->cells; i++) free(l->names[i]);
-  free(l);
   if (status) ethd_csv_free(out);
   return status;
 }
@@ -263,14 +262,11 @@ ethd_status ethd_csv_parse(const char *text, size_t length, const char *name, co
 }
 
 static ethd_status read_file(const char *path, const char *const *wanted, bool words, ethd_csv *out, char *message) {
-  char *text;
+  ETHD__FREED char *text = NULL;
   size_t length;
   *out = (ethd_csv){0};
   ethd_status status = ethd_text_read(path, BYTES_MAX, &text, &length, message);
-  if (status) return status;
-  status = parse(text, length, path, wanted, words, out, message);
-  free(text);
-  return status;
+  return status ? status : parse(text, length, path, wanted, words, out, message);
 }
 
 ethd_status ethd_csv_read_columns(const char *path, const char *const *wanted, ethd_csv *out,

@@ -65,7 +65,7 @@ void ethd__csv_put_word(FILE *file, const char *word) {
 void ethd_csv_word(ethd_csv_out *out, const char *word) { ethd__csv_put_word(next_cell(out), word); }
 
 void ethd_csv_text(ethd_csv_out *out, const char *text) {
-  char *plain;
+  ETHD__FREED char *plain = NULL;
   double number;
   if (!*text || !text[1] || ethd__number(text, strlen(text), &number) || !strchr("=+-@", *text) ||
       asprintf(&plain, "'%s", text) < 0) {
@@ -73,7 +73,6 @@ void ethd_csv_text(ethd_csv_out *out, const char *text) {
     return;
   }
   ethd_csv_word(out, plain);
-  free(plain);
 }
 
 void ethd_csv_row(ethd_csv_out *out) {

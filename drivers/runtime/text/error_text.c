@@ -2,7 +2,6 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define HEAD 200 /* bytes of a cut message before the cut */
@@ -14,7 +13,7 @@ static void keep_one_line(char *text) {
 
 /* A path may be longer than a message. Then its middle is left out, since its ends say more. */
 void ethd__say_all(char message[ETHD_MESSAGE_MAX], const char *format, va_list args) {
-  char *whole;
+  ETHD__FREED char *whole = NULL;
   int length = vasprintf(&whole, format, args);
   if (length < 0) {
     snprintf(message, ETHD_MESSAGE_MAX, "%s", ethd_status_sentence(ETHD_E_MEMORY));
@@ -24,7 +23,6 @@ void ethd__say_all(char message[ETHD_MESSAGE_MAX], const char *format, va_list a
     memcpy(message, whole, (size_t)length + 1);
   else
     snprintf(message, ETHD_MESSAGE_MAX, "%.*s...%s", HEAD, whole, whole + length - (ETHD_MESSAGE_MAX - 4 - HEAD));
-  free(whole);
   keep_one_line(message);
 }
 

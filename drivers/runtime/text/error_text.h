@@ -5,6 +5,7 @@
 #include <stdarg.h>
 
 #include "ethd/config.h"
+#include "text/freed.h"
 
 #define ETHD_QUOTE_MAX 56 /* bytes that ethd__quote writes at most, the closing 0 included */
 

@@ -14,6 +14,7 @@
 #include <sys/stat.h>
 
 #include "ethd/config.h"
+#include "text/freed.h"
 
 /* Received folders, innermost first. The caller keeps it until it leaves. */
 typedef struct ethd__received {

@@ -166,13 +166,13 @@ static void take_prose(feed *f, key_span s) {
   size_t equals = (size_t)((const char *)memchr(s.text, '=', s.length) - s.text);
   key_span left = trimmed((key_span){s.text, equals}),
            right = trimmed((key_span){s.text + equals + 1, s.length - equals - 1});
-  char *key = strndup(left.text, left.length), *value = strndup(right.text, right.length);
+  char *key = strndup(left.text, left.length);
+  ETHD__FREED char *value = strndup(right.text, right.length);
   if (!key || !value)
     f->status = ethd__no_memory(f->message, f->name);
   else
     (void)take_key(f, f->out->sections[f->out->section_count - 1].name, key, value);
   free(key);
-  free(value);
 }
 
 /* Gives inih its lines in place of fgets. It can't take a line that starts in the first column for a continuation. */

@@ -70,7 +70,7 @@ static bool is_left(const char *name, const char *target) {
 }
 
 static void remove_left(const char *path) {
-  char *folder = ethd__path_folder(path);
+  ETHD__FREED char *folder = ethd__path_folder(path);
   const char *slash = strrchr(path, '/'), *target = slash ? slash + 1 : path;
   DIR *entries = folder ? ethd__file_list(folder) : NULL;
   const struct dirent *entry;
@@ -83,7 +83,6 @@ static void remove_left(const char *path) {
     close(fd);
   }
   if (entries) closedir(entries);
-  free(folder);
 }
 
 /* ---- what is replaced ---- */
@@ -159,16 +158,14 @@ static ethd_status begin_at(const char *path, const struct stat *info, ethd_repl
 
 ethd_status ethd_replace_begin(const char *path, ethd_replace *out, char message[ETHD_MESSAGE_MAX]) {
   struct stat info;
-  char *target = NULL;
+  ETHD__FREED char *target = NULL;
   int given = descriptor_of(path);
   *out = (ethd_replace){0};
   if (given >= 0) return through(given, path, out, message);
   bool exists = ethd__file_look_at(path, &info) == 0;
   if (!exists) return errno == ENOENT ? replace(path, 0666, out, message) : ethd__file_refuse(path, message);
   ethd_status status = follow(path, &info, &target, message);
-  if (!status) status = begin_at(target ? target : path, &info, out, message);
-  free(target);
-  return status;
+  return status ? status : begin_at(target ? target : path, &info, out, message);
 }
 
 static void release(ethd_replace *replace) {

@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include "ethd/config.h"
+#include "text/freed.h"
 
 /* Returns what stands behind a noun after its number: "" for 1, else "s". [any] */
 static inline const char *ethd__s(uint64_t count) { return count == 1 ? "" : "s"; }
