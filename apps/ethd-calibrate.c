@@ -146,7 +146,7 @@ static int judge(const ethd__calibration *truth, const ethd__places *p) {
          (unsigned long long)arg.seed, arg.noise, arg.guided.frames, 1e3 * ETHD__MADE_FROM, 1e3 * ETHD__MADE_TO);
   for (int level = 0; level < ETHD__LEVEL_COUNT; level++) {
     ethd__calibration c;
-    if (ethd__places_fit(p, (ethd__level)level, &c, message) != ETHD_OK) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+    ethd__must(ethd__places_fit(p, (ethd__level)level, &c, message), message);
     double error = ethd__made_error(truth, &c);
     bool bad = level >= ETHD__LEVEL_LAW && !(error <= LAW_ERROR_MAX);
     printf("  %-8s %8.4f%s\n", ethd__level_names[level], 1e3 * error, bad ? "  over 0.05: failed" : "");
@@ -165,8 +165,7 @@ int main(int argc, char **argv) {
   ethd__catch_interrupt();
   if (arg.self_test) truth = ethd__made_ring(arg.seed);
   get_places(&truth, &places);
-  ethd_status status = ethd__places_fit(&places, arg.level, &c, message);
-  if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__must(ethd__places_fit(&places, arg.level, &c, message), message);
   ethd__calibration_print(&places, &c);
   write_files(&places, &c);
   return ethd__end(arg.self_test ? judge(&truth, &places) : ETHD_EXIT_DONE);

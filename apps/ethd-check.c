@@ -118,9 +118,9 @@ static ethd_device *reach_device(const ethd_config *config) {
                                .folder = config->folder,
                                .file = arg.config,
                                .space = config->is_space ? &config->space : NULL};
-  ethd_status status = arg.open ? ethd_device_open(config->device, NULL, &def, &d, message)
-                                : ethd_device_prepare(config->device, &def, &d, message);
-  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(arg.open ? ethd_device_open(config->device, NULL, &def, &d, message)
+                      : ethd_device_prepare(config->device, &def, &d, message),
+             message);
   return d;
 }
 
@@ -215,8 +215,7 @@ static void check(void) {
   char message[ETHD_MESSAGE_MAX];
   ethd_config *config;
   ethd__container_keeper(); /* what is said of the guardian holds for ethd-run */
-  ethd_status status = ethd_config_load(arg.config, &config, message);
-  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd_config_load(arg.config, &config, message), message);
   if (config->is_space) {
     check_space(config);
     return;

@@ -82,8 +82,7 @@ static int ask_driver(void) {
   ethd_config *config;
   ethd_conform_answer answers[ETHD_QUESTIONS];
   ethd__container_keeper();
-  ethd_status status = ethd_config_load(arg.config, &config, message);
-  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd_config_load(arg.config, &config, message), message);
   const ethd_device_def device = {.setup = config->is_space ? NULL : &config->setup,
                                   .settings = config->settings,
                                   .setting_count = config->setting_count,
@@ -94,7 +93,7 @@ static int ask_driver(void) {
   (arg.is_virtual ? ethd__catch_end : ethd__hold_device)();
   const ethd_conform_def def = {config->device, NULL, &device, arg.move ? arg.push : 0, &ethd__stop};
   const int count = config->is_space ? ETHD_SPACE_QUESTIONS : ETHD_QUESTIONS;
-  status = (config->is_space ? ethd_conform_space : ethd_conform)(&def, answers);
+  ethd_status status = (config->is_space ? ethd_conform_space : ethd_conform)(&def, answers);
   for (int i = 0; i < count; i++)
     printf("%-9s %-10s %s\n", answers[i].question, words[answers[i].verdict], answers[i].found);
   ethd__tell_refusal();

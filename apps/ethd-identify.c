@@ -124,8 +124,7 @@ static ethd_plant load_plant(const char *name) {
 static void load_evidence(ethd__evidence *e) {
   char message[ETHD_MESSAGE_MAX];
   for (int i = 0; i < arg.folder_count; i++) {
-    ethd_status status = ethd__evidence_add(e, arg.folders[i], message);
-    if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+    ethd__need(ethd__evidence_add(e, arg.folders[i], message), message);
   }
 }
 

@@ -109,14 +109,13 @@ static void write_csv(const ethd_loop_stats *s, const ethd_histogram *peer) {
   if (!out) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   for (uint32_t bin = 0; bin + 1 < ETHD_BINS; bin++)
     if (s->wake.counts[bin] || s->tick.counts[bin] || (peer && peer->counts[bin])) write_row(out, bin, s, peer);
-  if (ethd_csv_close(out, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__must(ethd_csv_close(out, message), message);
 }
 
 static void measure(ethd_loop_stats *out, int32_t *shortfalls, double *period) {
   static ethd__session session;
   char message[ETHD_MESSAGE_MAX];
-  ethd_status status = ethd__session_open(&arg.session, &session, message);
-  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd__session_open(&arg.session, &session, message), message);
   while (!ethd__stop && !ethd_loop_ended(session.loop) && ethd__session_time(&session) < arg.duration) {
     ethd__progress((uint64_t)(1e3 * ethd__session_time(&session)), (uint64_t)(1e3 * arg.duration), "loop");
     usleep(10000);
@@ -127,7 +126,7 @@ static void measure(ethd_loop_stats *out, int32_t *shortfalls, double *period) {
   *shortfalls = ethd_loop_shortfalls(session.loop);
   *period = session.period;
   ethd__session_halt(&session, ethd__stop);
-  status = ethd__session_end(&session, message);
+  ethd_status status = ethd__session_end(&session, message);
   if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   ethd__session_free(&session);
 }

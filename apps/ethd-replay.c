@@ -158,13 +158,11 @@ static int replay(void) {
   ethd__trace_in in;
   ethd_control *control;
   ethd_error error;
-  ethd_status status = ethd_config_load(arg.config, &config, message);
-  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd_config_load(arg.config, &config, message), message);
   ethd__need_plane(config);
-  status = ethd__trace_in_read(arg.in, &in, message);
-  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd__trace_in_read(arg.in, &in, message), message);
   config->setup.limits.latch = 0;
-  status = ethd_control_create(&config->setup, &control, &error);
+  ethd_status status = ethd_control_create(&config->setup, &control, &error);
   if (status < 0) {
     ethd_error_text(arg.config, &error, message);
     ethd__fail(ethd__exit_code(status), "%s", message);

@@ -15,23 +15,19 @@
 
 static ethd__tune_options arg;
 
-static void check(ethd_status status, const char *message) {
-  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
-}
-
 /* ---- what is searched for ---- */
 
 static void open_space(const ethd_config *config, ethd__tune_space *space) {
   char message[ETHD_MESSAGE_MAX];
   const char *law = arg.law ? arg.law : config->setup.transition->law.id;
-  check(ethd__space_open(config, law, space, message), message);
+  ethd__need(ethd__space_open(config, law, space, message), message);
 }
 
 /* Sets the ranges; what the user says of one has the last word. */
 static void set_ranges(const ethd__tune_rig *rig, ethd__tune_space *space) {
   char message[ETHD_MESSAGE_MAX];
   ethd__score_widen(rig, space);
-  for (size_t i = 0; i < arg.range_count; i++) check(ethd__space_range(space, arg.ranges[i], message), message);
+  for (size_t i = 0; i < arg.range_count; i++) ethd__need(ethd__space_range(space, arg.ranges[i], message), message);
 }
 
 /* ---- results ---- */
@@ -55,7 +51,7 @@ static void write_tuned(const ethd__tune_search *search, const ethd__tune_entry 
   ETHD__FREED char *folder = ethd__path_folder(arg.out), *head = head_of(search, choice, loaded, worths);
   bool same = folder && space->config->folder && !strcmp(folder, space->config->folder);
   ETHD__FREED char *text = ethd__tuned_text(space, &choice->point, head, !same);
-  check(ethd_text_write(arg.out, text, strlen(text), message), message);
+  ethd__need(ethd_text_write(arg.out, text, strlen(text), message), message);
 }
 
 static void draw(const ethd__tune_space *space, const ethd__loaded *loaded) {
@@ -64,8 +60,7 @@ static void draw(const ethd__tune_space *space, const ethd__loaded *loaded) {
   if (asprintf(&heading, "Gains for plant %s, transition %s", loaded->plant_name, space->law) < 0) ethd__fail_memory();
   const ethd__picture_value values[] = {
       {"in", arg.csv, true}, {"out", arg.plot, true}, {"heading", heading, false}, {0}};
-  ethd_status status = ethd__picture_draw("tune.gp", NULL, values, message);
-  if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__must(ethd__picture_draw("tune.gp", NULL, values, message), message);
 }
 
 static int show(const ethd__tune_search *search, const ethd__loaded *loaded) {
@@ -78,7 +73,7 @@ static int show(const ethd__tune_search *search, const ethd__loaded *loaded) {
          (unsigned long long)search->kept, (unsigned long long)search->drawn, ethd__s(search->drawn),
          search->kept == 1 ? "keeps" : "keep");
   ethd__tune_print(stdout, search, choice);
-  if (arg.csv) check(ethd__tune_csv(search, choice, arg.csv, message), message);
+  if (arg.csv) ethd__need(ethd__tune_csv(search, choice, arg.csv, message), message);
   if (arg.plot) draw(search->rig->space, loaded);
   if (!choice) {
     printf("\nno point came to rest with gains and delay at their margin, of %d that were tried; the last "
@@ -93,7 +88,7 @@ static int show(const ethd__tune_search *search, const ethd__loaded *loaded) {
          arg.prefer >= 0 ? ", twice for " : "", arg.prefer >= 0 ? ethd__tune_goal_names[arg.prefer] : "",
          (int)search->asked);
   (void)ethd__tune_print_margins(search->rig, &choice->point);
-  check(ethd__tune_weigh(search, choice, &worths, message), message);
+  ethd__need(ethd__tune_weigh(search, choice, &worths, message), message);
   printf("\n");
   ethd__tune_print_worths(stdout, search->rig->space, &choice->point, &worths);
   if (arg.out) write_tuned(search, choice, loaded, &worths);
@@ -105,7 +100,7 @@ static int show(const ethd__tune_search *search, const ethd__loaded *loaded) {
 static int search_it(ethd__tune_search *search, const ethd__loaded *loaded) {
   char message[ETHD_MESSAGE_MAX];
   bool over;
-  check(ethd__search_run(search, &over, message), message);
+  ethd__need(ethd__search_run(search, &over, message), message);
   if (!over) fprintf(stderr, "%s: stopped; nothing is written\n", program_invocation_short_name);
   int code = over ? show(search, loaded) : ETHD_EXIT_FAILED;
   ethd__search_free(search);
@@ -137,10 +132,10 @@ int main(int argc, char **argv) {
                        .seed = arg.seed,
                        .speeds = speeds,
                        .speed_count = ETHD_TUNE_SPEEDS};
-  check(ethd__study_prepare(&study, message), message);
+  ethd__need(ethd__study_prepare(&study, message), message);
   const ethd__tune_rig rig = {&study, &space, arg.hands, arg.margin, arg.passive};
   set_ranges(&rig, &space);
-  if (arg.plot) check(ethd__picture_ready(message), message);
+  if (arg.plot) ethd__need(ethd__picture_ready(message), message);
   ethd__tune_search search = {.rig = &rig, .points = (uint32_t)arg.points, .taps = (uint32_t)arg.taps};
   for (int g = 0; g < ETHD_TUNE_GOALS; g++) search.weights[g] = g == arg.prefer ? 2 : 1;
   ethd__catch_interrupt();

@@ -8,17 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <termios.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "clock.h"
 
 #define BITS 10     /* of a byte, 8N1 */
 #define SPIN 120000 /* ns: a sleep's own lateness, waited out awake */
-
-static int64_t now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
 
 static int open_terminal(char *name, size_t room) {
   struct termios t;
@@ -53,7 +48,7 @@ int main(int argc, char **argv) {
     for (int i = 0; i < 2; i++)
       if (lanes[i].count) {
         wait[i].fd = -1;
-        t = lanes[i].due - now() - SPIN;
+        t = lanes[i].due - ethd__clock_now() - SPIN;
         if (t < left) left = t;
       }
     struct timespec most = {left > 0 ? left / 1000000000 : 0, left > 0 ? left % 1000000000 : 0};
@@ -64,9 +59,9 @@ int main(int argc, char **argv) {
       if (!l->count && wait[i].revents & POLLIN) {
         l->count = read(fd[i], l->bytes, sizeof l->bytes);
         if (l->count < 0) l->count = 0;
-        int64_t begin = now() > l->due ? now() : l->due;
+        int64_t begin = ethd__clock_now() > l->due ? ethd__clock_now() : l->due;
         l->due = begin + (int64_t)((double)l->count * BITS * 1e9 / baud);
-      } else if (l->count && now() >= l->due) {
+      } else if (l->count && ethd__clock_now() >= l->due) {
         if (write(fd[!i], l->bytes, (size_t)l->count) < 0 && errno != EAGAIN) return 1;
         l->count = 0;
       }

@@ -97,11 +97,10 @@ static void show_drivers(ethd_csv_out *csv) {
 static ethd_config *load(const ethd__listing *what) {
   char message[ETHD_MESSAGE_MAX];
   ethd_config *config;
-  if (ethd_config_load(NULL, &config, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__must(ethd_config_load(NULL, &config, message), message);
   for (int i = 0; i < what->plugin_count; i++) {
     ethd__key key = {NULL, 0, "plugins", "file", what->plugins[i], message};
-    ethd_status status = ethd__config_plugin((ethd__config *)config, &key);
-    if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+    ethd__need(ethd__config_plugin((ethd__config *)config, &key), message);
   }
   return config;
 }

@@ -124,6 +124,14 @@ int ethd__exit_code(ethd_status status) {
   }
 }
 
+void ethd__need(ethd_status status, const char *message) {
+  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+}
+
+void ethd__must(ethd_status status, const char *message) {
+  if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+}
+
 /* ---- option values ---- */
 
 double ethd__option_number(const char *option, const char *text, double min, double max) {

@@ -52,6 +52,12 @@ char *ethd__print_end(ethd__printed *out);
 /* Returns the exit code for a failure of the library or of drivers: 1 for no memory, device and the like, else 2. */
 int ethd__exit_code(ethd_status status);
 
+/* Exits with this code and the message where the status is a failure. */
+void ethd__need(ethd_status status, const char *message);
+
+/* Does the same with 1: it isn't the input's fault. */
+void ethd__must(ethd_status status, const char *message);
+
 /* Each reads an option's value or exits 2: "--taps: found "x", a whole number from 1 to 1000 is allowed". */
 double ethd__option_number(const char *option, const char *text, double min, double max);
 int64_t ethd__option_integer(const char *option, const char *text, int64_t min, int64_t max);

@@ -24,8 +24,7 @@ static ethd_histogram trip;
 
 static void load(void) {
   char message[ETHD_MESSAGE_MAX];
-  ethd_status status = ethd__servo_map_load(arg.map, arg.map, &map, message);
-  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd__servo_map_load(arg.map, arg.map, &map, message), message);
   if (arg.port && strlen(arg.port) >= sizeof map.port) ethd__fail(ETHD_EXIT_INPUT, "--port: too long");
   if (arg.port) strcpy(map.port, arg.port);
 }
@@ -41,7 +40,7 @@ static bool answers(int32_t crc) {
   other = map;
   other.crc = crc;
   ethd__servo_plan_make(&other, &plan);
-  if (ethd__servo_bus_open(&other, &bus, message)) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__must(ethd__servo_bus_open(&other, &bus, message), message);
   ethd__servo_outcome got = ETHD__SERVO_MISSING;
   for (int i = 0; i < ASKS && (got == ETHD__SERVO_MISSING || got == ETHD__SERVO_GARBLED); i++) {
     (void)!ethd__servo_bus_drain(&bus);

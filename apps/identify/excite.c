@@ -131,13 +131,12 @@ static int record(const ethd__excitation *x, const ethd_config *c, double torque
                              .is_virtual = x->is_virtual,
                              .sink = {&out, take},
                              .loop = ethd_loop_default()};
-  ethd_status status = ethd__session_open(&o, &session, message);
-  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd__session_open(&o, &session, message), message);
   ethd__remarks_print(stderr, &session);
   run(&session, &out, x->seconds);
   atomic_store(&out.over, true);
   ethd__session_halt(&session, ethd__stop);
-  status = ethd__session_end(&session, message);
+  ethd_status status = ethd__session_end(&session, message);
   ethd__summary_print(stdout, &session, x->record);
   if (status) fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
   ethd__session_free(&session);
@@ -158,8 +157,7 @@ static double torque_limit(const ethd__excitation *x, const ethd_config *c) {
   char message[ETHD_MESSAGE_MAX];
   ethd_device *device;
   const ethd_device_def def = {&c->setup, c->settings, c->setting_count, c->folder, c->path, x->is_virtual, NULL};
-  ethd_status status = ethd_device_open(c->device, NULL, &def, &device, message);
-  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd_device_open(c->device, NULL, &def, &device, message), message);
   ethd_limits limits = ethd_device_limits(device);
   ethd_device_close(device);
   double most = fmin(limits.torque, c->setup.limits.torque);
@@ -179,8 +177,7 @@ int ethd__excite(const ethd__excitation *given) {
   char message[ETHD_MESSAGE_MAX];
   ethd__excitation x = *given;
   ethd_config *config;
-  ethd_status status = ethd_config_load(x.config, &config, message);
-  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd_config_load(x.config, &config, message), message);
   ethd__need_plane(config);
   (x.is_virtual ? ethd__catch_end : ethd__hold_device)(); /* from here on no print waits */
   double torque = torque_limit(&x, config);

@@ -26,12 +26,12 @@ static _Noreturn void start_reader(const ethd__scene_args *arg) {
 static void write_scene(const ethd_scene *scene, const char *path) {
   char message[ETHD_MESSAGE_MAX];
   ethd_replace replace;
-  if (ethd_replace_begin(path, &replace, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__must(ethd_replace_begin(path, &replace, message), message);
   if (ethd_scene_print(scene, replace.file) < 0 || ethd__stop) {
     ethd_replace_abandon(&replace);
     ethd__fail(ETHD_EXIT_FAILED, "%s: not written", path);
   }
-  if (ethd_replace_commit(&replace, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__must(ethd_replace_commit(&replace, message), message);
 }
 
 int ethd__scene_convert(const ethd__scene_args *arg) {

@@ -10,8 +10,7 @@ static ethd_setup setup_of(const char *path) {
   char message[ETHD_MESSAGE_MAX];
   ethd_config *config;
   if (!path) return ethd_setup_default();
-  ethd_status status = ethd_config_load(path, &config, message);
-  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd_config_load(path, &config, message), message);
   ethd__need_plane(config);
   ethd_setup setup = config->setup;
   setup.scene = NULL;

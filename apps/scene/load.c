@@ -11,8 +11,7 @@ static double seconds_now(void) { return 1e-9 * (double)ethd__clock_now(); }
 
 static char *read_text(const char *path, size_t *length) {
   char message[ETHD_MESSAGE_MAX], *text;
-  ethd_status status = ethd_text_read(path, SCENE_BYTES_MAX, &text, length, message);
-  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd_text_read(path, SCENE_BYTES_MAX, &text, length, message), message);
   return text;
 }
 

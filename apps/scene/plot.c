@@ -154,11 +154,11 @@ int ethd__scene_plot(const ethd__scene_args *arg, const ethd_scene *scene, const
   ethd_csv_out *out = ethd_csv_create(csv, "what,number,x_m,y_m,dx_m,dy_m", message);
   if (!out) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   draw_all(out, scene, setup);
-  if (ethd_csv_close(out, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__must(ethd_csv_close(out, message), message);
   const ethd__picture_value values[] = {
       {"in", csv, true}, {"out", arg->plot, true}, {"name", arg->scene, false}, {NULL, NULL, false}};
-  if (ethd__picture_ready(message) < 0 || ethd__picture_draw("scene.gp", NULL, values, message) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__must(ethd__picture_ready(message), message);
+  ethd__must(ethd__picture_draw("scene.gp", NULL, values, message), message);
   printf("picture:      %s, drawn from %s\n", arg->plot, csv);
   return ETHD_EXIT_DONE;
 }

@@ -35,8 +35,7 @@ int ethd__scene_query(const ethd__scene_args *arg) {
   ethd_csv points;
   double seconds;
   ethd_scene *scene = ethd__scene_load(arg->scene, &seconds);
-  ethd_status status = ethd_csv_read_columns(arg->in, wanted, &points, message);
-  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd_csv_read_columns(arg->in, wanted, &points, message), message);
   int x = column(&points, "x_m"), y = column(&points, "y_m");
   for (size_t row = 0; row < points.rows; row++) {
     coordinate(&points, row, x);

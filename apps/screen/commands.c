@@ -24,8 +24,7 @@ static void check(ethd_status status, const char *message) {
 static void check_study(const ethd__study_options *o, const ethd__protocol *p, const ethd__loaded *loaded) {
   char message[ETHD_MESSAGE_MAX];
   ethd__desk desk;
-  ethd_status status = ethd__desk_open(p, loaded, o->finger, &desk, message);
-  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd__desk_open(p, loaded, o->finger, &desk, message), message);
   ethd__desk_close(&desk);
   bool people = p->hands == ETHD_HANDS_PEOPLE;
   if (people && (o->simulate || o->finger))
@@ -197,9 +196,8 @@ static int merge_shards(const char *path) {
   char message[ETHD_MESSAGE_MAX] = "";
   ethd__folder folder;
   uint64_t taps;
-  ethd_status status = ethd__folder_read(path, &folder, message);
-  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
-  status = ethd__shards_merge(&folder, &taps, message);
+  ethd__need(ethd__folder_read(path, &folder, message), message);
+  ethd_status status = ethd__shards_merge(&folder, &taps, message);
   if (!status) status = ethd__sums_write(path, message);
   if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   const size_t points = ethd__protocol_points(&folder.protocol);
@@ -216,8 +214,7 @@ int ethd__command_merge(const ethd__study_options *o) {
   uint64_t taps;
   if (!o->out) return merge_shards(o->merge);
   memcpy(folders + 1, o->word, o->word_count * sizeof *folders);
-  ethd_status status = ethd__stations_fit(folders, o->word_count + 1, message);
-  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__need(ethd__stations_fit(folders, o->word_count + 1, message), message);
   check(ethd__stations_merge(folders, o->word_count + 1, o->out, &taps, message), message);
   say_taps(o->out, taps, o->word_count + 1);
   return ETHD_EXIT_DONE;

@@ -6,10 +6,6 @@
 #include "record/recording_parts.h"
 #include "run/summary.h"
 
-static void check(ethd_status status, const char *message) {
-  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
-}
-
 static void choose(ethd__sitting *sitting, const ethd__protocol *protocol, const ethd__place_options *o) {
   if (o->last > protocol->participants)
     ethd__fail(ETHD_EXIT_INPUT, "--participant: found %lld, 1 to %u are allowed", (long long)o->last,
@@ -38,7 +34,7 @@ static void take_device(ethd__screen_place *at, const ethd__place_options *o) {
   char message[ETHD_MESSAGE_MAX];
   ETHD__FREED char *config = ethd__folder_path(o->path, ETHD_RECORDING_CONFIG);
   ethd_status status = ethd__station_open(&at->desk, config, at->folder.device, o->is_virtual, &at->station, message);
-  check(status, message);
+  ethd__need(status, message);
   ethd__remarks_print(stderr, &at->station.session);
   at->device = ethd__station_source(&at->station);
   at->sitting.source = at->device;
@@ -69,15 +65,15 @@ static void take_front(ethd__screen_place *at, const ethd__place_options *o) {
 void ethd__place_open(const ethd__place_options *o, ethd__screen_place *out) {
   char message[ETHD_MESSAGE_MAX] = "";
   const ethd__protocol *protocol = &out->folder.protocol;
-  check(ethd__folder_open(o->path, true, &out->folder, message), message);
+  ethd__need(ethd__folder_open(o->path, true, &out->folder, message), message);
   bool people = protocol->hands == ETHD_HANDS_PEOPLE;
   if (o->is_virtual && !people)
     ethd__fail(ETHD_EXIT_INPUT, "--virtual: %s: hand.source: people is needed", protocol->path);
   if (out->folder.simulated)
     ethd__fail(ETHD_EXIT_INPUT, "%s: holds a simulation; the same command with --simulate goes on", o->path);
   out->console = (ethd__console){.protocol = protocol, .ask = o->ask, .quiet = o->quiet};
-  check(ethd__desk_open(protocol, &out->folder.loaded, out->folder.finger, &out->desk, message), message);
-  check(ethd__sitting_open(&out->folder, hand_of(o, &out->folder), &out->sitting, message), message);
+  ethd__need(ethd__desk_open(protocol, &out->folder.loaded, out->folder.finger, &out->desk, message), message);
+  ethd__need(ethd__sitting_open(&out->folder, hand_of(o, &out->folder), &out->sitting, message), message);
   choose(&out->sitting, protocol, o);
   out->markers.protocol = protocol;
   out->desk.markers = out->sitting.markers = &out->markers;

@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "cli/cli.h"
+#include "clock.h"
 #include "store/check.h"
 #include "store/schema.h"
 #include "text/error_text.h"
@@ -81,19 +81,13 @@ const char *ethd__store_text(sqlite3_stmt *query, int column) {
 
 /* ---- a limit of time ---- */
 
-static int64_t now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
-
 static void limit(ethd__study_store *s, int64_t size) {
-  s->until = now() + (PATIENCE + size / PATIENCE_BYTES) * 1000000000;
+  s->until = ethd__clock_now() + (PATIENCE + size / PATIENCE_BYTES) * 1000000000;
 }
 
 static int is_late(void *self) {
   const ethd__study_store *s = self;
-  return s->until && now() > s->until;
+  return s->until && ethd__clock_now() > s->until;
 }
 
 /* ---- opening ---- */

@@ -15,6 +15,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "ethd/loop.h"
 #include "unit/device_of.h"
 #include "unit/draw.h"
@@ -35,12 +36,6 @@ int clock_gettime(clockid_t id, struct timespec *out) {
   int failure = true_clock ? true_clock(id, out) : (int)syscall(SYS_clock_gettime, id, out);
   if (id == CLOCK_BOOTTIME) out->tv_sec += atomic_load(&suspended);
   return failure;
-}
-
-static int64_t now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
 static void pause_for(long ns) { nanosleep(&(struct timespec){.tv_nsec = ns}, NULL); }
@@ -66,7 +61,7 @@ static void pass(int place) {
   if (place != d.place || atomic_load(&d.reads) != d.tick || atomic_load(&d.dead)) return;
   d.before = torque(0);
   if (d.before == 0) return;
-  atomic_store(&d.died, now());
+  atomic_store(&d.died, ethd__clock_now());
   atomic_store(&d.dead, 1);
   for (int i = 0; !atomic_load(&d.let_go) && i < 20000; i++) pause_for(100000);
   d.alone = !atomic_load(&d.let_go);
@@ -93,7 +88,7 @@ static ethd_status dev_write(void *device, int64_t now_ns, const ethd_command *c
 static void dev_safe(void *device) ETHD_RT {
   (void)device;
   atomic_store(&d.safe, 1);
-  if (!atomic_load(&d.let_go)) atomic_store(&d.let_go, now());
+  if (!atomic_load(&d.let_go)) atomic_store(&d.let_go, ethd__clock_now());
 }
 
 static ethd_status dev_stop(void *device) { return (void)device, ETHD_OK; }

@@ -134,8 +134,7 @@ static device d;
 static ethd_loop *loop;
 
 static void open_loop(double early_wake) {
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   motion m = rig_at(0.001, -0.01, 0.001);
   d.sense = rig_sense(&r.setup.arm, &m);
   ethd_loop_def def = ethd_loop_default();
@@ -291,8 +290,7 @@ END_TEST
 
 /* A machine without PREEMPT_RT or rights is refused, with all its reasons; nothing ran. */
 START_TEST(test_require_rt) {
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   ethd_loop_def def = ethd_loop_default();
   ethd_error error;
   static ethd_device of_it;

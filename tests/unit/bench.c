@@ -42,8 +42,7 @@ static const ethd_driver driver = {.size = sizeof driver,
 
 void bench_open(bench *b) {
   memset(b, 0, sizeof *b);
-  rig_open(&b->r, NULL);
-  rig_start(&b->r);
+  rig_begin(&b->r, NULL, NULL);
   motion m = rig_at(0.01, 0, 0.001);
   b->clock = 5 * (int64_t)PERIOD;
   b->d = (device){.clock = &b->clock, .fail_read = -1, .fail_write = -1, .sense = rig_sense(&b->r.setup.arm, &m)};

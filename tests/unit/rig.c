@@ -34,6 +34,12 @@ void rig_set(ethd_setup *setup, const char *name, double value) {
                 ethd_status_sentence(error.status), error.found, error.min, error.max);
 }
 
+void rig_begin(rig *r, const char *scene, const ethd_transition_law *law) {
+  rig_open(r, scene);
+  if (law) ethd_setup_transition(&r->setup, law);
+  rig_start(r);
+}
+
 void rig_close(rig *r) {
   ethd_control_destroy(r->control);
   ethd_scene_destroy(r->scene);
@@ -86,6 +92,12 @@ void rig_post(rig *r) {
   ethd_error error;
   ethd_status status = ethd_control_post(r->control, &r->setup, &error);
   if (status != ETHD_OK) ck_abort_msg("post: %s: %s", error.name, ethd_status_sentence(status));
+}
+
+uint64_t rig_counted(const rig *r, int row) {
+  ethd_counters c;
+  ethd_control_counters(r->control, &c);
+  return c.faults[row];
 }
 
 ethd_event rig_poll(rig *r) {

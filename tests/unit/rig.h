@@ -30,6 +30,8 @@ ethd_scene *rig_scene(const char *text);
 /* The default setup with this scene (NULL: none); then rig_start makes the controller. */
 void rig_open(rig *r, const char *scene);
 void rig_start(rig *r);
+/* Both, with this law of transitions; NULL: the default one. */
+void rig_begin(rig *r, const char *scene, const ethd_transition_law *law);
 void rig_close(rig *r);
 
 /* A controller of this setup. */
@@ -49,6 +51,9 @@ ethd_status rig_try(rig *r, const ethd_sense *sense);
 
 /* Posts r->setup; checks that it is accepted. */
 void rig_post(rig *r);
+
+/* How often a row of the fault table was counted. */
+uint64_t rig_counted(const rig *r, int row);
 
 /* The next event, kind 0 when there is none. */
 ethd_event rig_poll(rig *r);

@@ -398,8 +398,7 @@ static const ethd_transition_law greedy = GREEDY, greedy_too = GREEDY;
 TEST(test_state_blocks) {
   rig r;
   /* one object only: its number is 0 in a block's first tick, when block[63] is 0 too */
-  rig_open(&r, "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\n");
-  rig_start(&r);
+  rig_begin(&r, "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\n", NULL);
   for (int tick = 0; tick < 100; tick++) {
     motion m = {{0.249 + 0.00005 * tick, 0.249}, {0, 0}, {0.249, 0.249}, {0, 0}};
     if (tick % 10 == 0) {

@@ -87,9 +87,7 @@ TEST(test_same_as_drawn_there) {
     snprintf(text, sizeof text, "capsule %.17g %.17g %.17g %.17g 0.004\n", x - 0.01 * c, y - 0.01 * s, x + 0.03 * c,
              y + 0.03 * s);
     open_with_body(&r, NULL, "capsule -0.01 0 0.03 0 0.004\n");
-    rig_open(&still, text);
-    ethd_setup_transition(&still.setup, &ethd_transition_smooth);
-    rig_start(&still);
+    rig_begin(&still, text, &ethd_transition_smooth);
     motion m = {{0.25, 0.25}, {0.1, -0.2}, {0.251, 0.249}, {0.1, -0.2}};
     const double pose[6] = {x, y, a, 0, 0, 0};
     step_with_pose(&r, &m, pose);
@@ -178,8 +176,7 @@ TEST(test_released) {
 TEST(test_skip) {
   rig r;
   int queries = 0;
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   for (int tick = 0; tick < 900; tick++) {
     double d = 0.1 - 0.0001 * tick, ahead = 0.002;
     motion m = rig_at(d, 0.1, ahead);
@@ -251,9 +248,7 @@ TEST(test_fine_curve_pushes_once) {
 /* A right angle still pushes twice. */
 TEST(test_corner_pushes_twice) {
   rig r;
-  rig_open(&r, "polyline 0.238 0.3 0.238 0.238 0.3 0.238\n");
-  ethd_setup_transition(&r.setup, &ethd_transition_smooth);
-  rig_start(&r);
+  rig_begin(&r, "polyline 0.238 0.3 0.238 0.238 0.3 0.238\n", &ethd_transition_smooth);
   motion m = {{0.249, 0.249}, {0, 0}, {0.249, 0.249}, {0, 0}};
   rig_step(&r, &m);
   ck_assert_int_eq(r.trace.contacts, 2);
@@ -265,9 +260,7 @@ TEST(test_corner_pushes_twice) {
 TEST(test_no_tunnelling) {
   for (int phase = 0; phase < 40; phase++) {
     rig r;
-    rig_open(&r, "segment 0.25 0.2 0.25 0.3\n");
-    ethd_setup_transition(&r.setup, &ethd_transition_smooth);
-    rig_start(&r);
+    rig_begin(&r, "segment 0.25 0.2 0.25 0.3\n", &ethd_transition_smooth);
     int pushed = 0;
     for (int tick = 0; tick < 30; tick++) {
       double x = 0.28 - 0.00005 * phase - 0.002 * tick;

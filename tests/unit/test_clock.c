@@ -87,8 +87,7 @@ TEST(test_begins_in_space) {
 
 TEST(test_begins_in_the_plane) {
   rig r;
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   const motion m = rig_at(0.02, 0, 0.001);
   r.sense.time_ns = 3600 * INT64_C(1000000000);
   for (int i = 0; i < 600; i++) {

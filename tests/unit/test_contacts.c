@@ -10,12 +10,6 @@ static void close_to(double got, double want) { ck_assert_double_eq_tol(got, wan
 /* Ring and finger together at x, moving with v. */
 static motion at(double x, double y, double vx, double vy) { return (motion){{x, y}, {vx, vy}, {x, y}, {vx, vy}}; }
 
-static void open_with(rig *r, const char *scene, const ethd_transition_law *law) {
-  rig_open(r, scene);
-  ethd_setup_transition(&r->setup, law);
-  rig_start(r);
-}
-
 /* ---- several ---- */
 
 /* A concave corner of one object: two contacts, each with a machine of its own. */
@@ -23,7 +17,7 @@ static const char corner[] = "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 
 
 TEST(test_corner) {
   rig r;
-  open_with(&r, corner, &ethd_transition_smooth);
+  rig_begin(&r, corner, &ethd_transition_smooth);
   motion m = at(0.249, 0.248, -0.1, 0.2);
   const ethd_trace *t = rig_step(&r, &m);
   ck_assert_int_eq(t->contacts, 2);
@@ -36,7 +30,7 @@ TEST(test_corner) {
 
 TEST(test_corner_has_two_machines) {
   rig r;
-  open_with(&r, corner, &ethd_transition_offset);
+  rig_begin(&r, corner, &ethd_transition_offset);
   motion m = at(0.249, 0.2505, -0.3, 0);
   rig_step(&r, &m); /* left wall: braking */
   m = at(0.2485, 0.2505, 0, 0);
@@ -57,7 +51,7 @@ TEST(test_corner_has_two_machines) {
    and the other met at the same tick, the second begins anew. */
 TEST(test_state_stays_with_its_wall) {
   rig r;
-  open_with(&r, "polygon 0.1 0.1 0.4 0.1 0.4 0.5 0.26705 0.5 0.26705 0.15 0.238 0.15 0.238 0.5 0.1 0.5\n",
+  rig_begin(&r, "polygon 0.1 0.1 0.4 0.1 0.4 0.5 0.26705 0.5 0.26705 0.15 0.238 0.15 0.238 0.5 0.1 0.5\n",
             &ethd_transition_offset);
   motion m = at(0.249, 0.25, -0.3, 0);
   ck_assert_int_eq(rig_step(&r, &m)->state, ETHD_BRAKING);
@@ -93,7 +87,7 @@ static const ethd_transition_law saying = {
 TEST(test_rulings_together) {
   for (int swapped = 0; swapped < 2; swapped++) { /* whichever is the deeper */
     rig r;
-    open_with(&r, RIG_WALL "halfplane 0 -1 -0.238\n", &saying);
+    rig_begin(&r, RIG_WALL "halfplane 0 -1 -0.238\n", &saying);
     double dx = swapped ? -0.001 : -0.003, dy = swapped ? -0.003 : -0.001;
     motion m = {{0.25 + dx, 0.25 + dy}, {0.1, -0.2}, {0.25 + dx, 0.25 + dy}, {0.1, -0.2}};
     const ethd_trace *t = rig_step(&r, &m);
@@ -114,7 +108,7 @@ TEST(test_rulings_together) {
 /* Equal depths: the lower object is shown. */
 TEST(test_order_of_equals) {
   rig r;
-  open_with(&r, "halfplane 0 1 0.9\n" RIG_WALL RIG_WALL, &ethd_transition_smooth);
+  rig_begin(&r, "halfplane 0 1 0.9\n" RIG_WALL RIG_WALL, &ethd_transition_smooth);
   motion m = at(0.249, 0.25, 0, 0);
   const ethd_trace *t = rig_step(&r, &m);
   ck_assert(t->object == 1 && t->contacts == 2 && t->overflow == 0);
@@ -138,7 +132,7 @@ TEST_LOOP(test_overflow_keeps_the_deepest, 0, 6) {
   const int counts[] = {8, 9, 10, 16, 17, 30};
   int walls = counts[_i];
   rig r;
-  open_with(&r, stack_of(walls, ""), &ethd_transition_smooth);
+  rig_begin(&r, stack_of(walls, ""), &ethd_transition_smooth);
   for (int tick = 1; tick <= 3; tick++) {
     motion m = at(0.247, 0.25, 0.01, 0);
     const ethd_trace *t = rig_step(&r, &m);
@@ -155,7 +149,7 @@ TEST_LOOP(test_overflow_keeps_the_deepest, 0, 6) {
 /* Eight are there when a ninth becomes the deepest: it takes the shallowest one's place. */
 TEST(test_newcomer_that_is_deeper) {
   rig r;
-  open_with(&r, stack_of(8, "halfplane 0 -1 -0.238\n"), &ethd_transition_smooth);
+  rig_begin(&r, stack_of(8, "halfplane 0 -1 -0.238\n"), &ethd_transition_smooth);
   motion m = at(0.249, 0.256, 0, 0);
   ck_assert_int_eq(rig_step(&r, &m)->overflow, 0);
   m = at(0.249, 0.246, 0, 0);
@@ -184,7 +178,7 @@ TEST(test_newcomer_leaves_the_others) {
   ethd_transition_law aging = ethd_transition_smooth;
   aging.step = aging_step;
   rig r;
-  open_with(&r, stack_of(8, "halfplane 0 -1 -0.238\n"), &aging);
+  rig_begin(&r, stack_of(8, "halfplane 0 -1 -0.238\n"), &aging);
   motion m = at(0.249, 0.256, 0, 0);
   for (int tick = 0; tick < 5; tick++) rig_step(&r, &m);
   m = at(0.249, 0.246, 0, 0);
@@ -204,7 +198,7 @@ TEST(test_new_scene_continues_each) {
     ethd_transition_law aging = ethd_transition_smooth;
     aging.step = aging_step;
     rig r;
-    open_with(&r, scenes[0], &aging);
+    rig_begin(&r, scenes[0], &aging);
     motion m = at(0.248, 0.249, 0, 0);
     for (int tick = 0; tick < 5; tick++) ck_assert_int_eq(rig_step(&r, &m)->contacts, 2);
     ethd_scene *other = rig_scene(scenes[k]);
@@ -227,7 +221,7 @@ TEST(test_new_scene_continues_each) {
 /* Not before d_re < d_beta (2.5 mm), or d_fe <= d_beta however far the finger is ahead. */
 TEST(test_within_reach) {
   rig r;
-  open_with(&r, RIG_WALL, &ethd_transition_smooth);
+  rig_begin(&r, RIG_WALL, &ethd_transition_smooth);
   motion m = rig_at(0.002501, 0, 0);
   const ethd_trace *t = rig_step(&r, &m);
   ck_assert(t->contacts == 0 && t->object == -1 && t->state == 0 && t->beta == 1 && t->queried == 1);
@@ -249,7 +243,7 @@ TEST(test_within_reach) {
 /* The tangent line stands for the surface, for the finger too. */
 TEST(test_circle) {
   rig r;
-  open_with(&r, "circle 0.2 0.25 0.03\n", &ethd_transition_smooth);
+  rig_begin(&r, "circle 0.2 0.25 0.03\n", &ethd_transition_smooth);
   motion m = {{0.244, 0.25}, {-0.2, 0.7}, {0.245, 0.258}, {0, 0}};
   const ethd_trace *t = rig_step(&r, &m);
   close_to(t->d_re, 0.044 - 0.03 - 0.012);
@@ -261,7 +255,7 @@ TEST(test_circle) {
 TEST(test_no_scene_and_empty_scene) {
   for (int empty = 0; empty < 2; empty++) {
     rig r;
-    open_with(&r, empty ? "# nothing\n" : NULL, &ethd_transition_offset);
+    rig_begin(&r, empty ? "# nothing\n" : NULL, &ethd_transition_offset);
     motion m = rig_at(-0.01, 0.3, 0.001);
     const ethd_trace *t = rig_step(&r, &m);
     ck_assert(t->contacts == 0 && t->beta == 1 && t->queried == empty);
@@ -287,7 +281,7 @@ static const ethd_transition_law lingering = {
 
 TEST(test_contact_lives_out_of_reach) {
   rig r;
-  open_with(&r, RIG_WALL "circle 0.25 0.35 0.01\n", &lingering);
+  rig_begin(&r, RIG_WALL "circle 0.25 0.35 0.01\n", &lingering);
   motion m = rig_at(0.001, 0, 0);
   for (int tick = 0; tick < 25; tick++) {
     const ethd_trace *t = rig_step(&r, &m);
@@ -309,7 +303,7 @@ TEST(test_contact_lives_out_of_reach) {
 /* v_th goes first, far outside as well: eps < 0 for one tick. */
 TEST(test_braking_that_ends_far_outside) {
   rig r;
-  open_with(&r, RIG_WALL, &ethd_transition_offset);
+  rig_begin(&r, RIG_WALL, &ethd_transition_offset);
   motion m = rig_at(-0.001, 0.4, 0);
   rig_step(&r, &m);
   m = rig_at(0.020, 0.01, 0);
@@ -329,7 +323,7 @@ static const char thin[] = "segment 0.238 0.1 0.238 0.4\n";
 /* The side is the one on which the contact began, through the wall and out of reach behind it. */
 TEST(test_thin_wall_remembers_its_side) {
   rig r;
-  open_with(&r, thin, &ethd_transition_smooth);
+  rig_begin(&r, thin, &ethd_transition_smooth);
   for (double d = 0.002; d > -0.1; d -= 0.004) {
     motion m = at(0.25 + d, 0.25, -4, 0);
     const ethd_trace *t = rig_step(&r, &m);
@@ -347,7 +341,7 @@ TEST(test_thin_wall_remembers_its_side) {
 /* Behind it there is another wall; the thin one is the deeper. */
 TEST(test_thin_wall_is_the_deepest) {
   rig r;
-  open_with(&r, "segment 0.238 0.1 0.238 0.4\nhalfplane -1 0 -0.218\n", &ethd_transition_smooth);
+  rig_begin(&r, "segment 0.238 0.1 0.238 0.4\nhalfplane -1 0 -0.218\n", &ethd_transition_smooth);
   for (double x = 0.251; x > 0.22; x -= 0.005) {
     motion m = at(x, 0.25, 0, 0);
     const ethd_trace *t = rig_step(&r, &m);
@@ -361,7 +355,7 @@ TEST(test_thin_wall_is_the_deepest) {
 /* Begun on the left, it is a wall toward +x. */
 TEST(test_thin_wall_from_behind) {
   rig r;
-  open_with(&r, thin, &ethd_transition_smooth);
+  rig_begin(&r, thin, &ethd_transition_smooth);
   motion m = at(0.226 - 0.001, 0.25, 0.1, 0);
   close_to(rig_step(&r, &m)->d_re, 0.001);
   m = at(0.226 + 0.020, 0.25, 0.1, 0);
@@ -374,7 +368,7 @@ TEST(test_thin_wall_from_behind) {
 /* The finger is measured from the ring's side. */
 TEST(test_thin_wall_and_a_finger_behind_it) {
   rig r;
-  open_with(&r, thin, &ethd_transition_smooth);
+  rig_begin(&r, thin, &ethd_transition_smooth);
   motion m = {{0.251, 0.25}, {0, 0}, {0.228, 0.25}, {0, 0}};
   const ethd_trace *t = rig_step(&r, &m);
   close_to(t->d_fe, 0.228 - 0.238 - 0.0075);
@@ -385,7 +379,7 @@ TEST(test_thin_wall_and_a_finger_behind_it) {
 /* Past an end the wall is a point; beyond it the other side is as good. */
 TEST(test_thin_wall_round_an_end) {
   rig r;
-  open_with(&r, thin, &ethd_transition_smooth);
+  rig_begin(&r, thin, &ethd_transition_smooth);
   motion m = at(0.251, 0.395, 0, 0);
   close_to(rig_step(&r, &m)->d_re, 0.001);
   m = at(0.248, 0.4075, 0, 0); /* 10 and 7.5 mm from the end: 12.5 mm */
@@ -404,7 +398,7 @@ TEST(test_thin_wall_round_an_end) {
 
 TEST(test_materials) {
   rig r;
-  open_with(&r,
+  rig_begin(&r,
             "material soft k_e=500 b_e=10\nmaterial hard k_e=9000\n" RIG_WALL
             "halfplane -1 0 -0.238 material=soft\nhalfplane 0 -1 -0.238 material=hard\n",
             &ethd_transition_smooth);

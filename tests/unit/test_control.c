@@ -10,8 +10,7 @@
 /* Parallel arm at link angles 90 and 0 deg: J = ((-0.25, 0), (0, 0.25)), so F_x gives tau1 = -F_x / 4. */
 TEST(test_stiffness_felt_in_x) {
   rig r;
-  rig_open(&r, NULL);
-  rig_start(&r);
+  rig_begin(&r, NULL, NULL);
   motion m = {{0.25, 0.25}, {0, 0}, {0.251, 0.25}, {0, 0}};
   const ethd_trace *t = rig_step(&r, &m);
   /* K_t eps_q = 40 * -0.004: 640 N/m * 1 mm at the ring */
@@ -34,9 +33,7 @@ TEST(test_stiffness_felt_in_x) {
 /* VO-A, 2 mm inside at 0.1 m/s, finger at the ring's centre: d_fe = -2 + 4.5 = 2.5 mm = d_beta, beta = 1. */
 TEST(test_smooth_by_hand) {
   rig r;
-  rig_open(&r, RIG_WALL);
-  ethd_setup_transition(&r.setup, &ethd_transition_smooth);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, &ethd_transition_smooth);
   motion m = rig_at(-0.002, 0.1, 0.001);
   const ethd_trace *t = rig_step(&r, &m);
   ck_assert_double_eq_tol(t->d_re, -0.002, 1e-15);
@@ -56,8 +53,7 @@ TEST(test_smooth_by_hand) {
 /* VO-B: nothing at the switch, a wall at x_eps behind it. */
 TEST(test_offset_by_hand) {
   rig r;
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   motion m = rig_at(-0.001, 0.3, 0.002);
   const ethd_trace *t = rig_step(&r, &m);
   ck_assert_int_eq(t->state, ETHD_BRAKING);
@@ -125,8 +121,7 @@ TEST(test_never_attractive) {
 
 TEST(test_no_finger_seen) {
   rig r;
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   motion m = rig_at(0.001, 0.2, 0.004);
   ethd_sense s = rig_sense(&r.setup.arm, &m);
   s.have = ETHD_HAVE_DQ;

@@ -8,12 +8,6 @@
 
 static motion at(double x, double y) { return (motion){{x, y}, {0, 0}, {x, y}, {0, 0}}; }
 
-static void open_with(rig *r, const char *scene, const ethd_transition_law *law) {
-  rig_open(r, scene);
-  ethd_setup_transition(&r->setup, law);
-  rig_start(r);
-}
-
 static uint64_t lost(const rig *r) {
   ethd_counters c;
   ethd_control_counters(r->control, &c);
@@ -25,7 +19,7 @@ static uint64_t lost(const rig *r) {
 /* In a concave corner of one polygon, two; from far beyond the corner's point both lead to the same touch. */
 TEST(test_two_become_one) {
   rig r;
-  open_with(&r, "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\n", &ethd_transition_smooth);
+  rig_begin(&r, "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\n", &ethd_transition_smooth);
   motion m = at(0.249, 0.249);
   ck_assert_int_eq(rig_step(&r, &m)->contacts, 2);
   m = at(0.1, 0.1); /* inside a solid there is one contact */
@@ -39,7 +33,7 @@ TEST(test_two_become_one) {
 /* Near but transparent, then far away: nothing is lost that pushed. */
 TEST(test_ends_transparent) {
   rig r;
-  open_with(&r, RIG_WALL, &ethd_transition_offset);
+  rig_begin(&r, RIG_WALL, &ethd_transition_offset);
   motion m = rig_at(0.001, 0.01, 0);
   const ethd_trace *t = rig_step(&r, &m);
   ck_assert(t->contacts == 1 && t->state == ETHD_TRANSPARENT);
@@ -58,7 +52,7 @@ TEST(test_newcomers_on_both_sides) {
   snprintf(text + n, sizeof text - n,
            "halfplane 0 1 0.2592\nhalfplane 0 1 0.2591\nhalfplane 0 1 0.2606\nhalfplane 0 1 0.2607\n");
   rig r;
-  open_with(&r, text, &ethd_transition_smooth);
+  rig_begin(&r, text, &ethd_transition_smooth);
   motion m = at(0.249, 0.24); /* 1 mm to 0.3 mm deep in eight, far from the others */
   const ethd_trace *t = rig_step(&r, &m);
   ck_assert(t->contacts == 8 && t->overflow == 0);
@@ -75,7 +69,7 @@ TEST(test_newcomers_on_both_sides) {
 /* In the wall, at a tick that can't be measured: the new law begins anew, and does its work at the next. */
 TEST(test_swap_without_measurement) {
   rig r;
-  open_with(&r, RIG_WALL, &ethd_transition_smooth);
+  rig_begin(&r, RIG_WALL, &ethd_transition_smooth);
   r.setup.limits.latch = 0;
   rig_post(&r);
   motion m = rig_at(-0.002, 0, 0);
@@ -96,8 +90,8 @@ TEST(test_swap_to_an_older_law) {
   ethd_transition_law old = ethd_transition_offset;
   old.law.size = ETHD_TRANSITION_LAW_MIN;
   rig r, other;
-  open_with(&r, RIG_WALL, &ethd_transition_smooth);
-  open_with(&other, RIG_WALL, &ethd_transition_smooth);
+  rig_begin(&r, RIG_WALL, &ethd_transition_smooth);
+  rig_begin(&other, RIG_WALL, &ethd_transition_smooth);
   motion m = rig_at(-0.002, 0, 0);
   rig_step(&r, &m);
   rig_step(&other, &m);

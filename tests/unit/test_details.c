@@ -28,8 +28,7 @@ static ethd_sense sense_at(const rig *r, double d) {
 TEST(test_joints) {
   for (int k = 0; k < 4; k++) {
     rig r;
-    rig_open(&r, NULL);
-    rig_start(&r);
+    rig_begin(&r, NULL, NULL);
     ethd_sense s = sense_at(&r, 0.02);
     r.setup.limits.joints[k] = s.q[k / 2] + (k % 2 ? -0.01 : 0.01);
     rig_post(&r);

@@ -39,8 +39,7 @@ TEST(test_shared_scene_comes_back_once) {
 /* Torque that a row takes away is zero in the trace, too: not nearly so. */
 TEST(test_raw_torque_is_zero) {
   rig r;
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   motion m = rig_at(-0.002, 0, 0.001);
   rig_step(&r, &m);
   ck_assert(r.trace.tau_raw[0] != 0);

@@ -6,12 +6,6 @@
 #include "unit/draw.h"
 #include "unit/moody.h"
 
-static uint64_t counted(const rig *r, int row) {
-  ethd_counters c;
-  ethd_control_counters(r->control, &c);
-  return c.faults[row];
-}
-
 static ethd_status with(rig *r, ethd_sense s, int64_t faults, int64_t grave) {
   s.faults = faults;
   s.grave = grave;
@@ -72,7 +66,7 @@ TEST_LOOP(test_reaction, 2, 2 * ETHD_FAULT_COUNT) {
     expect_zero(&r, row);
   else
     expect_goes_on(&r, &healthy);
-  ck_assert_uint_eq(counted(&r, row), 1);
+  ck_assert_uint_eq(rig_counted(&r, row), 1);
   if (grave || (row != ETHD_FAULT_TORQUE && row != ETHD_FAULT_TORQUE_RATE))
     moody_expect_event(&r, ETHD_EVENT_FAULT, row, grave);
   ck_assert_int_eq(rig_poll(&r).kind, 0);
@@ -115,7 +109,8 @@ TEST(test_occurrences) {
   for (int i = 0; way[i]; i++)
     with(&r, moody_sense(&r), way[i] == '#' ? ETHD_FAULT_BIT(row) | ETHD_FAULT_BIT(ETHD_FAULT_OVERRUN) : 0,
          worse[i] == 'x' ? ETHD_FAULT_BIT(ETHD_FAULT_TORQUE) : 0);
-  ck_assert(counted(&r, row) == 3 && counted(&r, ETHD_FAULT_OVERRUN) == 3 && counted(&r, ETHD_FAULT_TORQUE) == 1);
+  ck_assert(rig_counted(&r, row) == 3 && rig_counted(&r, ETHD_FAULT_OVERRUN) == 3 &&
+            rig_counted(&r, ETHD_FAULT_TORQUE) == 1);
   ck_assert_int_eq(r.status, ETHD_OK);
   for (int i = 0; i < 3; i++) {
     moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_OVERRUN, 0);
@@ -127,7 +122,7 @@ TEST(test_occurrences) {
   with(&r, moody_sense(&r), ETHD_FAULT_BIT(other), ETHD_FAULT_BIT(other));
   moody_expect_event(&r, ETHD_EVENT_FAULT, other, 0);
   moody_expect_event(&r, ETHD_EVENT_FAULT, other, 1);
-  ck_assert(counted(&r, other) == 1 && r.trace.fault == other);
+  ck_assert(rig_counted(&r, other) == 1 && r.trace.fault == other);
   rig_close(&r);
 }
 
@@ -152,7 +147,7 @@ TEST(test_first_stays) {
   const int rows[] = {ETHD_FAULT_APPLICATION, ETHD_FAULT_OVERRUNS, ETHD_FAULT_EMERGENCY_STOP, ETHD_FAULT_INPUT};
   for (int i = 0; i < 4; i++) {
     moody_expect_event(&r, ETHD_EVENT_FAULT, rows[i], 0);
-    ck_assert_uint_eq(counted(&r, rows[i]), 1);
+    ck_assert_uint_eq(rig_counted(&r, rows[i]), 1);
   }
   rig_close(&r);
 }
@@ -250,7 +245,7 @@ TEST_LOOP(test_clock_rate, 0, sizeof clocks / sizeof *clocks) {
     int64_t sample = i / clocks[_i].every * clocks[_i].every;
     s.time_ns = from + llround(clocks[_i].rate * 1e6 * (double)sample);
     with(&r, s, clocks[_i].told ? ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD) : 0, 0);
-    if (counted(&r, ETHD_FAULT_CLOCK)) seen = i;
+    if (rig_counted(&r, ETHD_FAULT_CLOCK)) seen = i;
   }
   ck_assert_msg(seen >= clocks[_i].least && seen <= clocks[_i].most, "row CLOCK after %d ticks", seen);
   rig_close(&r);

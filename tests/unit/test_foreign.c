@@ -166,9 +166,7 @@ TEST_LOOP(test_range_and_adopt, 0, 5) {
   law.adopt = adopt;
   misdeed = 0;
   rig r;
-  rig_open(&r, RIG_WALL);
-  ethd_setup_transition(&r.setup, &ethd_transition_offset);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, &ethd_transition_offset);
   ethd_sense s = sense_at(&r, -0.001);
   ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   ethd_setup_transition(&r.setup, &law);

@@ -6,12 +6,6 @@
 #include "unit/draw.h"
 #include "unit/moody.h"
 
-static uint64_t counted(const rig *r, int row) {
-  ethd_counters c;
-  ethd_control_counters(r->control, &c);
-  return c.faults[row];
-}
-
 static ethd_sense at(const rig *r, double x, double v) {
   motion m = rig_at(x, v, 0);
   ethd_sense s = rig_sense(&r->setup.arm, &m);
@@ -86,7 +80,7 @@ TEST_LOOP(test_bounds, 0, 3) {
     ethd_sense s = at(&r, 0.0005 * k + 0.0001, -0.1);
     ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   }
-  ck_assert_uint_eq(counted(&r, ETHD_FAULT_WORKSPACE), _i < 2);
+  ck_assert_uint_eq(rig_counted(&r, ETHD_FAULT_WORKSPACE), _i < 2);
   ethd_sense s = at(&r, 0.0102, -0.1);
   rig_try(&r, &s);
   ck_assert(r.trace.fault == ETHD_FAULT_WORKSPACE && r.command.safe == 0);
@@ -219,7 +213,7 @@ TEST(test_cut) {
     ck_assert_int_eq(e.kind, i == 0 ? ETHD_EVENT_TAKEN : i == 100 ? ETHD_EVENT_FAULT : 0);
     if (i == 100) ck_assert(e.code == ETHD_FAULT_TORQUE && e.value == 1);
   }
-  ck_assert_uint_eq(counted(&r, ETHD_FAULT_TORQUE), 1);
+  ck_assert_uint_eq(rig_counted(&r, ETHD_FAULT_TORQUE), 1);
   rig_close(&r);
 }
 
@@ -233,7 +227,7 @@ TEST(test_steep) {
     ethd_sense s = moody_sense(&r);
     ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   }
-  ck_assert_uint_gt(counted(&r, ETHD_FAULT_TORQUE_RATE), 0);
+  ck_assert_uint_gt(rig_counted(&r, ETHD_FAULT_TORQUE_RATE), 0);
   mood.tracking = MOODY_BAD;
   int ticks = 0;
   for (; r.trace.fault == 0 && ticks < 100; ticks++) {

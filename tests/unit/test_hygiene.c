@@ -58,50 +58,38 @@ static const char scene_text[] =
 
 static int well_said; /* a failure leaves its output empty and names its status */
 
+/* Makes the object, destroys it, and returns what making it said. */
+#define RETURN_MADE(object, destroy, call)                     \
+  do {                                                         \
+    ethd_error error;                                          \
+    const ethd_status status_ = call;                          \
+    if (status_ == ETHD_OK)                                    \
+      destroy(object);                                         \
+    else                                                       \
+      well_said = (object) == NULL && error.status == status_; \
+    return status_;                                            \
+  } while (0)
+
 static ethd_status make_controller(void) {
   ethd_setup setup = ethd_setup_default();
   ethd_control *control;
-  ethd_error error;
-  ethd_status status = ethd_control_create(&setup, &control, &error);
-  if (status == ETHD_OK)
-    ethd_control_destroy(control);
-  else
-    well_said = control == NULL && error.status == status;
-  return status;
+  RETURN_MADE(control, ethd_control_destroy, ethd_control_create(&setup, &control, &error));
 }
 
 static ethd_status make_cell(void) {
   ethd_cell *cell;
-  ethd_error error;
-  ethd_status status = ethd_cell_create(100, &cell, &error);
-  if (status == ETHD_OK)
-    ethd_cell_destroy(cell);
-  else
-    well_said = cell == NULL && error.status == status;
-  return status;
+  RETURN_MADE(cell, ethd_cell_destroy, ethd_cell_create(100, &cell, &error));
 }
 
 static ethd_status parse_scene(void) {
   ethd_scene *scene;
-  ethd_error error;
-  ethd_status status = ethd_scene_parse(scene_text, strlen(scene_text), &scene, &error);
-  if (status == ETHD_OK)
-    ethd_scene_destroy(scene);
-  else
-    well_said = scene == NULL && error.status == status;
-  return status;
+  RETURN_MADE(scene, ethd_scene_destroy, ethd_scene_parse(scene_text, strlen(scene_text), &scene, &error));
 }
 
 static ethd_status parse_solids(void) {
   static const char text[] = "material soft k_e=500\nhalfspace 0 0 -1 0 material=soft\nbox 0 0 0 1 1 1\n";
   ethd_solids *solids;
-  ethd_error error;
-  ethd_status status = ethd_solids_parse(text, sizeof text - 1, &solids, &error);
-  if (status == ETHD_OK)
-    ethd_solids_destroy(solids);
-  else
-    well_said = solids == NULL && error.status == status;
-  return status;
+  RETURN_MADE(solids, ethd_solids_destroy, ethd_solids_parse(text, sizeof text - 1, &solids, &error));
 }
 
 static ethd_status make_scene(void) {
@@ -109,27 +97,15 @@ static ethd_status make_scene(void) {
   const ethd_object_def objects[] = {{ETHD_SHAPE_HALFPLANE, -1, wall, 3, 0}, {ETHD_SHAPE_POLYGON, -1, shape, 6, 0}};
   const ethd_scene_def def = {objects, 2, NULL, 0};
   ethd_scene *scene;
-  ethd_error error;
-  ethd_status status = ethd_scene_create(&def, &scene, &error);
-  if (status == ETHD_OK)
-    ethd_scene_destroy(scene);
-  else
-    well_said = scene == NULL && error.status == status;
-  return status;
+  RETURN_MADE(scene, ethd_scene_destroy, ethd_scene_create(&def, &scene, &error));
 }
 
 static ethd_status prune_scene(void) {
   static ethd_scene *whole;
   const ethd_arm arm = {ETHD_ARM_PARALLEL, 0.1, 0.1};
   ethd_scene *scene;
-  ethd_error error;
   if (!whole) whole = rig_scene("circle 0.1 0 0.01\ncircle 9 0 0.01\npolyline 0 0 1 0 1 1 2 1 2 2 3 3\n");
-  ethd_status status = ethd_scene_prune(whole, &arm, 0.02, &scene, &error);
-  if (status == ETHD_OK)
-    ethd_scene_destroy(scene);
-  else
-    well_said = scene == NULL && error.status == status;
-  return status;
+  RETURN_MADE(scene, ethd_scene_destroy, ethd_scene_prune(whole, &arm, 0.02, &scene, &error));
 }
 
 static char ini[64];
@@ -281,7 +257,7 @@ END_TEST
 int main(void) {
   Suite *suite = suite_create("hygiene");
   TCase *t = tcase_create("hygiene");
-  tcase_add_loop_test(t, test_memory_runs_out, 0, 6);
+  tcase_add_loop_test(t, test_memory_runs_out, 0, 7);
   tcase_add_test(t, test_a_tap);
   tcase_add_loop_test_raise_signal(t, test_traps, SIGABRT, 0, 7);
   suite_add_tcase(suite, t);

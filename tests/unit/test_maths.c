@@ -11,6 +11,7 @@
 #endif
 
 #include "maths/two_waves.h"
+#include "unit/draw.h"
 #include "unit/suite.h"
 
 #define PI_2 0x1.921fb54442d18469898cc517018p+0L
@@ -18,13 +19,6 @@
 enum { POINTS = 150000 };
 
 /* ---- points ---- */
-
-static uint64_t mix(uint64_t i) {
-  uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
-  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-  return z ^ z >> 31;
-}
 
 static uint64_t bits_of(double x) {
   uint64_t u;
@@ -38,32 +32,29 @@ static double of_bits(uint64_t u) {
   return x;
 }
 
-/* Uniform in [a, b). */
-static double uniform(uint64_t i, double a, double b) { return a + (b - a) * ((double)(mix(i) >> 11) * 0x1p-53); }
-
-static double nudge(double x, uint64_t i) { return x == 0 ? x : of_bits(bits_of(x) + mix(i ^ 0x5555) % 9 - 4); }
+static double nudge(double x, uint64_t i) { return x == 0 ? x : of_bits(bits_of(x) + draw_bits(i ^ 0x5555) % 9 - 4); }
 
 static double any_finite(uint64_t i) {
-  uint64_t u = mix(i);
+  uint64_t u = draw_bits(i);
   return of_bits((u & 0x7ff0000000000000) == 0x7ff0000000000000 ? u ^ 0x4000000000000000 : u);
 }
 
 static double any_positive(uint64_t i) { return fabs(any_finite(i)); }
-static double quarter(uint64_t i) { return uniform(i, -0.79, 0.79); }
-static double turns(uint64_t i) { return uniform(i, -10, 10); }
-static double many_turns(uint64_t i) { return uniform(i, -1e5, 1e5); }
-static double at_method_border(uint64_t i) { return uniform(i, 0x1p20 - 10, 0x1p20 + 10); }
-static double near_zero(uint64_t i) { return uniform(i, -1, 1) * exp2(-(double)(i % 1074)); }
+static double quarter(uint64_t i) { return draw(i, -0.79, 0.79); }
+static double turns(uint64_t i) { return draw(i, -10, 10); }
+static double many_turns(uint64_t i) { return draw(i, -1e5, 1e5); }
+static double at_method_border(uint64_t i) { return draw(i, 0x1p20 - 10, 0x1p20 + 10); }
+static double near_zero(uint64_t i) { return draw(i, -1, 1) * exp2(-(double)(i % 1074)); }
 
 /* Next to the first 64k multiples of pi/4, then to larger and larger ones. */
 static double near_eighth_turns(uint64_t i) {
-  uint64_t k = i % 2 ? i : mix(i) >> (i / 2 % 60);
+  uint64_t k = i % 2 ? i : draw_bits(i) >> (i / 2 % 60);
   return nudge((double)((long double)k * (PI_2 / 2)), i);
 }
 
-static double all_powers(uint64_t i) { return uniform(i, -708.39, 709.79); }
-static double subnormal_powers(uint64_t i) { return uniform(i, -745.2, -708.396); }
-static double small_powers(uint64_t i) { return uniform(i, -1, 1); }
+static double all_powers(uint64_t i) { return draw(i, -708.39, 709.79); }
+static double subnormal_powers(uint64_t i) { return draw(i, -745.2, -708.396); }
+static double small_powers(uint64_t i) { return draw(i, -1, 1); }
 
 /* Where exp changes its row of the table. */
 static double power_borders(uint64_t i) {
@@ -71,12 +62,12 @@ static double power_borders(uint64_t i) {
   return nudge((double)(((long double)k + 0.5L) * logl(2) / 16), i);
 }
 
-static double near_one(uint64_t i) { return 1 + uniform(i, -1, 1) * exp2(-(double)(i % 53)); }
-static double octave(uint64_t i) { return uniform(i, 0.5, 2); }
-static double subnormal(uint64_t i) { return of_bits(mix(i) >> (12 + i % 52)); }
-static double small(uint64_t i) { return uniform(i, -0.3, 0.3); }
-static double middling(uint64_t i) { return uniform(i, 0.24, 1); }
-static double wide(uint64_t i) { return uniform(i, -21, 21); }
+static double near_one(uint64_t i) { return 1 + draw(i, -1, 1) * exp2(-(double)(i % 53)); }
+static double octave(uint64_t i) { return draw(i, 0.5, 2); }
+static double subnormal(uint64_t i) { return of_bits(draw_bits(i) >> (12 + i % 52)); }
+static double small(uint64_t i) { return draw(i, -0.3, 0.3); }
+static double middling(uint64_t i) { return draw(i, 0.24, 1); }
+static double wide(uint64_t i) { return draw(i, -21, 21); }
 
 /* ---- accuracy ---- */
 
@@ -148,7 +139,7 @@ static void check_atan2(double y, double x) {
 
 TEST_LOOP(test_atan2_accuracy, 0, LDBL_MANT_DIG >= 64) {
   for (uint64_t i = 0; i < POINTS; i++) {
-    double x = uniform(2 * i, -1, 1), y = uniform(2 * i + 1, -1, 1);
+    double x = draw(2 * i, -1, 1), y = draw(2 * i + 1, -1, 1);
     double ratio = (double)(i % 33) / 16 - 1; /* the borders between rows, and the rows */
 
     check_atan2(y, x);
@@ -312,7 +303,7 @@ static uint64_t fnv(uint64_t hash, double x) {
 static uint64_t golden(void) {
   uint64_t hash = 0xcbf29ce484222325u;
   for (uint64_t i = 0; i < 10000; i++) {
-    double u = (double)(mix(i) >> 11) * 0x1p-53 - 0.5, v = (double)(mix(~i) >> 11) * 0x1p-53 - 0.5;
+    double u = (double)(draw_bits(i) >> 11) * 0x1p-53 - 0.5, v = (double)(draw_bits(~i) >> 11) * 0x1p-53 - 0.5;
     double s, c, scale = of_bits((1023 + i % 900) << 52);
 
     ethd_sincos(u * 0x1p17, &s, &c);

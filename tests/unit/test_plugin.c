@@ -188,8 +188,7 @@ TEST(test_my_law) {
 TEST(test_my_law_is_nothing_special) {
   rig r;
   ethd_error error;
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   motion m = rig_at(-0.001, 0.1, 0.001);
   rig_step(&r, &m);
   ethd_setup_transition(&r.setup, (const ethd_transition_law *)(const void *)open_law("mylaw"));

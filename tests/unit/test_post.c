@@ -21,8 +21,7 @@ static void run(rig *r, int from, int to) {
 
 TEST(test_taken_at_the_next_step) {
   rig r;
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   run(&r, 0, 3);
   ck_assert_int_eq(rig_poll(&r).kind, 0);
   ethd_setup_transition(&r.setup, &ethd_transition_smooth);
@@ -70,8 +69,7 @@ TEST(test_refusal_changes_nothing) {
 TEST(test_period_cannot_change) {
   rig r;
   ethd_error error;
-  rig_open(&r, NULL);
-  rig_start(&r);
+  rig_begin(&r, NULL, NULL);
   r.setup.period = 0.002;
   ck_assert_int_eq(ethd_control_post(r.control, &r.setup, &error), ETHD_E_ARGUMENT);
   ck_assert_str_eq(error.name, "loop.period");
@@ -82,8 +80,7 @@ TEST(test_period_cannot_change) {
 /* A replaced scene comes back once, when it is no longer used. */
 TEST(test_scene_comes_back) {
   rig r;
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   run(&r, 0, 10);
   ethd_scene *first = r.scene, *second = rig_scene("halfplane 1 0 0.3\n");
   r.setup.scene = second;
@@ -110,8 +107,7 @@ TEST(test_scene_comes_back) {
    new contact: braking again. */
 TEST(test_new_wall_restarts_contacts) {
   rig r;
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   motion m = rig_at(-0.001, 0.3, 0);
   rig_step(&r, &m);
   m = rig_at(-0.001, 0, 0);
@@ -167,8 +163,7 @@ TEST(test_full_ring) {
 
 TEST(test_ring_goes_round) {
   rig r;
-  rig_open(&r, NULL);
-  rig_start(&r);
+  rig_begin(&r, NULL, NULL);
   for (int i = 0; i < 1000; i++) {
     rig_post(&r);
     run(&r, 0, 1);

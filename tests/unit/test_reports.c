@@ -103,8 +103,7 @@ TEST(test_impossible_reports) {
   static const double bad[] = {NAN, INFINITY, -INFINITY, 1e7};
   for (int k = 0; k < 20; k++) {
     rig r;
-    rig_open(&r, NULL);
-    rig_start(&r);
+    rig_begin(&r, NULL, NULL);
     ethd_sense s = {.have = k % 5 == 4 || k < 8 ? ETHD_HAVE_AGE : ETHD_HAVE_COMMANDED, .q = {1.5, 0.1}};
     double *number = s.have & ETHD_HAVE_AGE ? &s.age[k & 1] : &s.commanded[k & 1];
     ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);

@@ -137,8 +137,7 @@ static ethd_scene *prune_for(const ethd_setup *setup) {
 TEST(test_same_tap) {
   rig a, b;
   int touched = 0;
-  rig_open(&a, FAR_AWAY FAR_AWAY NEAR_BY);
-  rig_start(&a);
+  rig_begin(&a, FAR_AWAY FAR_AWAY NEAR_BY, NULL);
   rig_open(&b, FAR_AWAY FAR_AWAY NEAR_BY);
   ethd_scene *pruned = prune_for(&b.setup);
   b.setup.scene = pruned;

@@ -78,8 +78,7 @@ static motion tap(int tick) {
 TEST_LOOP(test_swapped_in_a_tap, 0, 2) {
   rig r;
   int swaps = 0, touched = 0, most = 0;
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   ethd_scene *held = NULL; /* the large one that rules or is about to */
   ethd_scene *given_back = NULL;
   watch();

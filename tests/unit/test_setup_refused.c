@@ -184,9 +184,7 @@ TEST(test_range_of_contacts) {
     rig r;
     law.range = range_of;
     range = cases[i].range;
-    rig_open(&r, RIG_WALL);
-    ethd_setup_transition(&r.setup, &law);
-    rig_start(&r);
+    rig_begin(&r, RIG_WALL, &law);
     motion m = rig_at(cases[i].d, 0.01, 0.001);
     ck_assert_int_eq(rig_step(&r, &m)->contacts, cases[i].contacts);
     rig_close(&r);

@@ -43,9 +43,7 @@ TEST_LOOP(test_every_tick_of_a_tap, 0, 9) {
   const ethd_transition_law *from = strategies[_i % 3], *to = strategies[_i / 3];
   rig r, stays;
   int moved = 0;
-  rig_open(&stays, RIG_WALL);
-  ethd_setup_transition(&stays.setup, from);
-  rig_start(&stays);
+  rig_begin(&stays, RIG_WALL, from);
   rig_open(&r, RIG_WALL);
   for (int at = 0; at < TAP; at++) {
     motion m = tap(at);

@@ -15,9 +15,7 @@ static const ethd_trace *swap_to(rig *r, const ethd_transition_law *law, const m
    tick as ever. Out of it eps is forgotten and doesn't come back. */
 TEST(test_into_offset_and_out) {
   rig r;
-  rig_open(&r, RIG_WALL);
-  ethd_setup_transition(&r.setup, &ethd_transition_smooth);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, &ethd_transition_smooth);
   motion m = rig_at(-0.002, 0, 0);
   ck_assert_int_eq(rig_step(&r, &m)->state, ETHD_VO);
   const ethd_trace *t = swap_to(&r, &ethd_transition_offset, &m);
@@ -55,9 +53,7 @@ TEST(test_past) {
   looking.law.id = "looking";
   looking.adopt = look_back;
   rig r;
-  rig_open(&r, RIG_WALL);
-  ethd_setup_transition(&r.setup, &ethd_transition_abrupt);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, &ethd_transition_abrupt);
   motion m = rig_at(0.001, 0.2, 0);
   for (int i = 0; i < 4; i++) rig_step(&r, &m);
   ck_assert_int_eq(r.trace.state, ETHD_TRANSPARENT);
@@ -77,8 +73,7 @@ TEST(test_past) {
 /* Other gains for the same law: its state stays. */
 TEST(test_same_law_keeps_its_state) {
   rig r;
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   motion m = rig_at(-0.002, 0.3, 0);
   rig_step(&r, &m);
   r.setup.transition_p[0] = 50;
@@ -165,9 +160,7 @@ TEST(test_estimators_go_on) {
 /* A thin wall that the ring has pulled itself through keeps its side, out of reach as well. */
 TEST(test_thin_wall_keeps_its_side) {
   rig r;
-  rig_open(&r, "segment 0.238 0.1 0.238 0.4\n");
-  ethd_setup_transition(&r.setup, &ethd_transition_smooth);
-  rig_start(&r);
+  rig_begin(&r, "segment 0.238 0.1 0.238 0.4\n", &ethd_transition_smooth);
   motion m = rig_at(0.001, 0.1, 0);
   for (double d = 0.001; d > -0.05; d -= 0.005) {
     m = rig_at(d, 0.1, 0);
@@ -182,8 +175,7 @@ TEST(test_thin_wall_keeps_its_side) {
 /* A soft start is a fade like any other. */
 TEST(test_swap_in_a_soft_start) {
   rig r;
-  rig_open(&r, RIG_WALL);
-  rig_start(&r);
+  rig_begin(&r, RIG_WALL, NULL);
   motion m = rig_at(-0.002, 0.01, 0.001);
   ethd_sense bad = rig_sense(&r.setup.arm, &m), s = bad;
   bad.q[0] = NAN;
