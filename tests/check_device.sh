@@ -25,7 +25,7 @@ says "^drivers  *servo: read, not touched" "an exchange: 5 messages, $wire of wi
 printf '[limits]\ntorque = 0.04\n' >>"$folder/c.ini"
 says 'one count of torque1 is 0.0467 Nm at the joint, over the limit of 0.04 Nm: its torque is always 0'
 # the joints' inertia is given twice: 0.1173 kg at 0.25 m are 0.00733 kg m^2; 0.05 is 6.8 times as much, 0.001 a seventh
-for inertia in 0.05:'a hand that pushes may be taken' 0.001:"a reversed encoder isn't noticed"; do
+for inertia in 0.05:'a pushing hand may be mistaken' 0.001:"a reversed encoder isn't noticed"; do
   sed "s/^counts = 4000/counts = 4000\ninertia = ${inertia%%:*}/" apps/config/svd48v.map >"$folder/weighed.map"
   configure 'driver = servo' 'map = weighed.map' 'port = /nowhere/tty'
   says "inertia of joint 1 is ${inertia%%:*} kg m^2, but arm.mass_x = 0.117 kg on a link of 0.25 m makes 0.00733: ${inertia#*:}"

@@ -1,4 +1,4 @@
-/* What all programs share: argp's settings, one-line failures, strict option values, progress, Ctrl-C.
+/* Shared by all programs: argp's settings, one-line failures, strict option values, progress, Ctrl-C.
 
    Exit codes: 0 done, 1 the job failed, 2 wrong usage or bad input. All [main]. */
 #ifndef ETHD__APPS_CLI_CLI_H
@@ -19,12 +19,12 @@ enum { ETHD_EXIT_DONE = 0, ETHD_EXIT_FAILED = 1, ETHD_EXIT_INPUT = 2 };
    instead of a signal that ends the program; keeps control characters on stdout and stderr from a terminal. */
 void ethd__begin(void);
 
-/* Says that code of a plugin runs on this thread from here on (`what` it is, for people), or no longer (NULL). If it
-   doesn't return within `patience` s, the program says so and exits 1. Once it has run, a plugin can call exit at any
-   time; such an exit is reported and becomes exit 1. ethd__begin hooks this into the reading of configurations. */
+/* Announces that a plugin's code runs on this thread from here on (`what`: its name for people), or no longer (NULL).
+   If it doesn't return within `patience` s, the program says so and exits 1. Once it has run, a plugin can call exit at
+   any time; such an exit is reported and becomes exit 1. ethd__begin hooks this into the reading of configurations. */
 void ethd__foreign(const char *what, unsigned patience);
 
-/* Says that the program itself is about to exit. */
+/* Announces the program's own exit. */
 void ethd__leave(void);
 
 /* Comes last in main: `return ethd__end(code)`. Exits 1 if stdout could not be written. */
@@ -33,7 +33,7 @@ int ethd__end(int code);
 /* Prints "program: message" as one line on stderr and exits. */
 _Noreturn void ethd__fail(int code, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Does the same for "no memory". */
+/* The same for "no memory". */
 _Noreturn void ethd__fail_memory(void);
 
 /* Returns folder/name, which the caller frees; exits 1 without memory. */
@@ -72,24 +72,24 @@ char *ethd__picture_table(const char *png);
 /* Exits 2 if the output is the input's file; NULL: there is none. */
 void ethd__refuse_input(const char *option, const char *output, const char *input_option, const char *input);
 
-/* Exits 2 if two outputs are one file, where the second would replace the first; NULL: no such output. */
+/* Exits 2 if two outputs are one file, so that the second would replace the first; NULL: no such output. */
 void ethd__refuse_same(const char *option, const char *output, const char *other_option, const char *other);
 
 /* Calls `each` for every word of a comma-separated list; exit 2 on an empty word. */
 void ethd__option_list(const char *option, const char *text, void (*each)(const char *word, void *user), void *user);
 
 /* Returns the path of a file that is installed with the programs ("n.ini"): $ETHD_DATA_DIR/NAME, else
-   ../share/ethd/NAME beside the program's folder. The caller frees it; exits 1 if there is no such file. */
+   ../share/ethd/NAME beside the program's folder. The caller frees it; exits 1 if the file is missing. */
 char *ethd__data_path(const char *name);
 
-/* Returns the file as it is named or, if there is none, the installed one of that name. The caller frees it. */
+/* Returns the named file or, if it is missing, the installed one of that name. The caller frees it. */
 char *ethd__given_or_data(const char *name);
 
 /* Marks the folder as received from others: from here on no link below it is followed, and only regular files
-   are read and replaced there (text/file.h). NULL: there is none. */
+   are read and replaced there (text/file.h). NULL: none. */
 void ethd__receive(const char *folder);
 
-/* Exits 2 at a configuration of the front in space, for a program that works in the plane alone. */
+/* For a program of the plane alone: exits 2 at a configuration of the front in space. */
 void ethd__need_plane(const ethd_config *config);
 
 /* Exits 2 unless the folder holds a recording. */
@@ -103,7 +103,8 @@ char *ethd__motion_folder(void);
 void ethd__progress(uint64_t done, uint64_t total, const char *what);
 
 /* Makes Ctrl-C and SIGTERM set ethd__stop from here on, and end every wait, for a file, a pipe or another program; a
-   second one ends the program at once. Here and below, a signal that is ignored when the program starts stays ignored. */
+   second signal ends the program at once. Here and below, a signal that is ignored when the program starts stays
+   ignored. */
 void ethd__catch_interrupt(void);
 
 /* For a program that moves a device, before it opens a file or starts a thread: in a container the program goes on as

@@ -15,7 +15,7 @@
 #include "cli/cli.h"
 #include "device/container.h"
 
-#define LEFT 10 /* s that what the program leaves behind has, at most */
+#define LEFT 10 /* s, at most, for the program's remaining processes */
 
 /* All signals but SIGCONT and those that a program raises by its own error. Signals that stop a job are passed on, too:
    the program decides whether it stops. */
@@ -27,7 +27,7 @@ static sigset_t passed_on(void) {
   return set;
 }
 
-/* Takes the ends of children; *end is the program's. Returns whether any are left. */
+/* Collects the ends of children; *end is the program's. Returns whether any are left. */
 static bool reap(pid_t program, bool *ended, int *end) {
   int how;
   pid_t child;

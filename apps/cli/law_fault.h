@@ -5,14 +5,14 @@
 #include "ethd/control.h"
 
 typedef struct ethd__law_fault {
-  const ethd_law *law; /* NULL: no law's fault */
+  const ethd_law *law; /* NULL: not a law's fault */
   const char *what;    /* a sentence */
 } ethd__law_fault;
 
 /* Returns which of the active laws, by their kind, caused the event's fault. */
 ethd__law_fault ethd__law_fault_of(const ethd_law *const laws[ETHD_TRANSITION + 1], const ethd_event *event);
 
-/* Takes all events that wait and returns the first of a law's faults among them. */
+/* Removes all waiting events and returns the first law's fault among them. */
 ethd__law_fault ethd__law_fault_take(ethd_control *control, const ethd_setup *setup);
 
 /* Writes "the contact law cubic: what it did" and returns text. */

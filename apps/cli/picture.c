@@ -15,7 +15,7 @@
 #include "text/file.h"
 #include "text/text.h"
 
-/* ---- what gnuplot is told ---- */
+/* ---- commands to gnuplot ---- */
 
 /* gnuplot reads nothing within '..' but the doubled quote; a line end would end the string. */
 static void put_string(FILE *to, const char *text) {

@@ -1,8 +1,8 @@
-/* Pictures by gnuplot. No other code runs it. All [main].
+/* Draws pictures with gnuplot. No other code runs it. All [main].
 
-   gnuplot takes text for commands in many places, so nothing that stands in a file or on our command line reaches it
-   but as a string: names and words go through its standard input as quoted assignments, no shell sees them, and the
-   scripts read data files only. */
+   gnuplot reads text as commands in many places, so all text from a file or our command line reaches it as a string:
+   names and words go through its standard input as quoted assignments, no shell sees them, and the scripts read data
+   files only. */
 #ifndef ETHD__APPS_CLI_PICTURE_H
 #define ETHD__APPS_CLI_PICTURE_H
 
@@ -10,7 +10,7 @@
 
 #include "ethd/config.h"
 
-/* A variable of the script. A file's path is told from words: one that begins with < or | would be a command. */
+/* A variable of the script. A path is marked as one: one that begins with < or | would be a command. */
 typedef struct ethd__picture_value {
   const char *name, *text;
   bool is_file;

@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* From here on a terminal at stdout or stderr gets ? for each of them except tabs and line ends. Returns false without
-   memory. [main] */
+/* From here on a terminal at stdout or stderr gets ? for each control character except tabs and line ends. Returns
+   false without memory. [main] */
 bool ethd__terminals_plain(void);
 
 /* From here on threads write what goes to stdout and stderr; no print waits any more. Returns false without memory.
@@ -21,8 +21,8 @@ int ethd__stdout_end(uint64_t *dropped);
 /* Clears the cursor's line of the terminal on stderr. [any] */
 void ethd__terminal_erase_line(void);
 
-/* Returns false while the program is in the background of the terminal at stdin, whose lines are then for others.
-   [any] */
+/* Returns false while the program is in the background of the terminal at stdin, whose lines then belong to other
+   programs. [any] */
 bool ethd__stdin_is_ours(void);
 
 #endif

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define ETHD__WRITER_ROOM ((size_t)1 << 18) /* bytes that may wait */
+#define ETHD__WRITER_ROOM ((size_t)1 << 18) /* bytes of waiting text */
 
 typedef struct ethd__writer {
   int fd;
@@ -22,10 +22,10 @@ typedef struct ethd__writer {
   char at[ETHD__WRITER_ROOM];
 } ethd__writer;
 
-/* Starts the thread for a descriptor, whose flags stay as they are. Returns false if there is no thread. [main] */
+/* Starts the thread for a descriptor without changing its flags. Returns false without a thread. [main] */
 bool ethd__writer_start(ethd__writer *writer, int fd);
 
-/* Takes the text, or drops all of it. Never waits for a reader. [any] */
+/* Queues the text, or drops all of it. Never waits for a reader. [any] */
 void ethd__writer_put(ethd__writer *writer, const char *text, size_t length);
 
 /* Waits until all is written, as long as the reader reads; after 0.3 s without a read the rest counts as dropped.

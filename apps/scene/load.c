@@ -31,7 +31,7 @@ ethd_scene *ethd__scene_load(const char *path, double *seconds) {
   return scene;
 }
 
-/* Neither fits where both refuse: then the one that comes farther is meant. */
+/* If both readers refuse the file, the message of the one that reads farther is used. */
 ethd_scene *ethd__world_load(const char *path, ethd_solids **solids, double *seconds) {
   size_t length;
   ethd_scene *scene;

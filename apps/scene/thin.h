@@ -4,8 +4,8 @@
 
 #include "ethd/scene.h"
 
-/* Prints a line, after `before`, if solids of the scene are so thin that a ring that is pressed in comes past their
-   middle, where the force turns round. [main] */
+/* Prints a line, after `before`, if solids of the scene are so thin that a pressed ring passes their middle,
+   where the force reverses. [main] */
 void ethd__scene_say_thin(const ethd_scene *scene, const char *before);
 
 #endif

@@ -87,7 +87,7 @@ static char *going_on(const ethd__study_options *o, const char *folder) {
   return ethd__print_end(&text);
 }
 
-/* Returns true if the folder's configuration names plugins, which ethd-report runs only when it is told to. */
+/* Returns true if the folder's configuration names plugins, which ethd-report runs only on request. */
 static bool has_plugins(const char *folder) {
   char message[ETHD_MESSAGE_MAX];
   ETHD__FREED char *text = NULL, *path = ethd__folder_path(folder, "config.ini");
@@ -102,7 +102,7 @@ static bool has_plugins(const char *folder) {
   return has;
 }
 
-/* Says what the folder holds now, and the command that shows it. */
+/* Prints the folder's new contents, and the command that shows them. */
 static void say_taps(const char *folder, uint64_t taps, size_t stations) {
   const char *quote = strpbrk(folder, UNQUOTED) ? "'" : "";
   printf("%s: ", folder);

@@ -1,4 +1,4 @@
-/* What ethd-study does with its options: a session, a simulation, a merge, a look. All [main]; each returns the exit
+/* The commands of ethd-study: a session, a simulation, a merge, a check. All [main]; each returns the exit
    code, and ends the program on bad input. */
 #ifndef ETHD__APPS_SCREEN_COMMANDS_H
 #define ETHD__APPS_SCREEN_COMMANDS_H
@@ -10,7 +10,7 @@
 typedef struct ethd__study_options {
   const char *study, *out, *resume, *finger, *merge, *export, *verify, *describe, *markers;
   const char *decision, *reason;             /* withdraw, exclude, include; of a tap: accept, reject */
-  const char *word[ETHD_STUDY_STATIONS + 1]; /* that are no options: the study, or further stations */
+  const char *word[ETHD_STUDY_STATIONS + 1]; /* arguments without an option: the study, or further stations */
   size_t word_count;
   int64_t first, last; /* participants, from 1; 0: all */
   ethd__about decided;
@@ -20,7 +20,7 @@ typedef struct ethd__study_options {
   bool ask, quiet, sharded, is_virtual, plan, words, plugins;
 } ethd__study_options;
 
-/* Begins a session in `out` or goes on with the one in `resume`. */
+/* Begins a session in `out` or continues the one in `resume`. */
 int ethd__command_session(const ethd__study_options *o);
 
 /* Simulates one shard. */
@@ -29,7 +29,7 @@ int ethd__command_shard(const ethd__study_options *o);
 /* Merges the shards of one folder, or the sessions of several folders into `out`. */
 int ethd__command_merge(const ethd__study_options *o);
 
-/* Writes a folder's tables anew from its store. */
+/* Writes a folder's tables again from its store. */
 int ethd__command_export(const ethd__study_options *o);
 
 /* Records a decision about a participant or a tap. */
@@ -41,7 +41,7 @@ int ethd__command_words(const ethd__study_options *o);
 /* Prints the orders. */
 int ethd__command_plan(const ethd__study_options *o);
 
-/* Writes what the study of one folder, or of several stations, asked for. */
+/* Writes the description of a study, from one folder or several stations. */
 int ethd__command_describe(const ethd__study_options *o);
 
 /* Checks a folder's sums. */

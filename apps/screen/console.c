@@ -10,7 +10,7 @@
 #include "cli/terminal.h"
 #include "study/progress.h"
 
-#define LOOK 100 /* ms between two looks at a terminal in whose background this may be */
+#define LOOK 100 /* ms between two checks of a terminal in whose background this may be */
 
 /* ---- lines out ---- */
 
@@ -59,7 +59,7 @@ static void verdict(void *self, const char *participant, const ethd__taken *take
 
 /* ---- lines in ---- */
 
-/* Returns whether stdin has something for us; while the program is in the background of its terminal, it hasn't. */
+/* Returns whether stdin has input for us; false while the program is in the background of its terminal. */
 static bool is_there(bool wait) {
   struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
   int ready;
@@ -68,7 +68,7 @@ static bool is_there(bool wait) {
   return ready > 0;
 }
 
-/* Reads a line if there is one; waits for it only during a pause or when a question was asked. */
+/* Reads a line if there is one; waits for it only during a pause or after a question. */
 static bool read_line(ethd__console *c, bool wait, char *out, size_t room) {
   size_t n = 0;
   if (c->ended || !is_there(wait)) return false;
@@ -145,7 +145,7 @@ static ethd__wish choose(ethd__console *c, const char *const word[2], const ethd
   return ETHD_WISH_STOP;
 }
 
-/* The experimenter types the number of the next participant, which nobody does by accident. */
+/* The experimenter types the number of the next participant, which can't happen by accident. */
 static ethd__wish meet(void *self, const ethd__meeting *meeting) {
   ethd__console *c = self;
   const ethd__questionnaire *q = &c->protocol->questionnaire;

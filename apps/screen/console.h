@@ -4,7 +4,7 @@
 
 #include "study/front.h"
 
-/* Returns the phrase that tells the participant how a tap was, and what to do. [any] */
+/* Returns the phrase with a tap's result for the participant, and the next action. [any] */
 ethd__phrase_name ethd__advice(ethd__reason reason);
 
 /* Does the same for a tap that the experimenter may have accepted or rejected (study/front.h). [any] */
@@ -14,7 +14,7 @@ ethd__phrase_name ethd__advised(ethd__reason reason, const char *checked);
 typedef struct ethd__console {
   const ethd__protocol *protocol;
   bool ask, quiet, ended, paused;
-  bool good; /* the latest tap counts, and so can be accepted or rejected */
+  bool good; /* the latest tap counts: it can be accepted or rejected */
 } ethd__console;
 
 ethd__front ethd__console_front(ethd__console *console);

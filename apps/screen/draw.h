@@ -1,4 +1,4 @@
-/* Draws what all pages of the study's screen show. All [main]. */
+/* Draws the common parts of the study's screen. All [main]. */
 #ifndef ETHD__APPS_SCREEN_DRAW_H
 #define ETHD__APPS_SCREEN_DRAW_H
 
@@ -7,10 +7,10 @@
 extern const SDL_Color ethd__white, ethd__grey, ethd__green, ethd__red;
 
 /* Draws the walls, the start line, and the finger at x, kept within the free space. The speed cue runs from the start
-   to the wall at the commanded speed; seconds < 0: there is none. */
+   to the wall at the commanded speed; seconds < 0: no cue. */
 void ethd__draw_room(ethd__screen *screen, ethd_vec x, double seconds);
 
-/* Returns where words may begin under the room, px. */
+/* Returns the top of the words under the room, px. */
 double ethd__draw_floor(const ethd__screen *screen);
 
 /* Returns the finger's centre, m: the device's finger, or the pointer. */

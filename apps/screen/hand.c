@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define SHARE 0.35   /* of the way to the pointer at each sample */
+#define SHARE 0.35   /* of the distance to the pointer at each sample */
 #define RESTED 0.025 /* s without an event: the pointer stood still */
 
 ethd_status ethd__hand_create(ethd__hand *h, ethd_vec x, double seconds) {
@@ -26,8 +26,8 @@ void ethd__hand_move(ethd__hand *h, double t, ethd_vec x) {
   h->event[h->events++ % ETHD_HAND_EVENTS] = (ethd__hand_event){t, x};
 }
 
-/* Where the pointer was at t: on the line between the events about it; one that rested began to move shortly before the
-   first event of it. */
+/* The pointer's position at t: interpolated linearly between the events around t; a resting pointer began to move
+   shortly before its next event. */
 static ethd_vec pointer_at(const ethd__hand *h, double t) {
   size_t oldest = h->events > ETHD_HAND_EVENTS ? h->events - ETHD_HAND_EVENTS : 0, i = h->events;
   while (i > oldest && h->event[(i - 1) % ETHD_HAND_EVENTS].t > t) i--;

@@ -6,7 +6,7 @@
 
 #include "study/protocol.h"
 
-/* Refuses a questionnaire with the first letter that the font lacks, and says where it stands. */
+/* Refuses a questionnaire with the first letter that the font lacks, and gives its place. */
 ETHD_MUST_CHECK ethd_status ethd__letters_check(const ethd__questionnaire *q, const TTF_Font *font,
                                                 char message[ETHD_MESSAGE_MAX]);
 

@@ -37,7 +37,7 @@ static void lead(ethd__live *l, double t) {
   ethd__hand_lead(&l->hand, t);
 }
 
-/* Late ticks are caught up with, because simulated time must follow the pointer. */
+/* Late ticks are made up for, because simulated time must follow the pointer. */
 static void *run(void *live) {
   ethd__live *l = live;
   ethd__tapping tapping;
@@ -58,7 +58,7 @@ static void *run(void *live) {
 
 /* ---- [main] ---- */
 
-/* Before everything that has no realtime priority, the screen among it, where the machine grants that. */
+/* Runs before everything without realtime priority, the screen included, if the machine grants that. */
 static int create(ethd__live *l, int policy) {
   pthread_attr_t attr;
   struct sched_param param = {.sched_priority = policy == SCHED_FIFO ? PRIORITY : 0};

@@ -10,7 +10,7 @@
 #include "screen/hand.h"
 #include "tap/study.h"
 
-/* What the screen draws. */
+/* The state that the screen draws. */
 typedef struct ethd__glimpse {
   double t; /* s of the tap */
   ethd_vec finger, ring;
@@ -19,7 +19,7 @@ typedef struct ethd__glimpse {
   double touch; /* s of the tap: the finger's first touch, NaN before it */
 } ethd__glimpse;
 
-/* Where the pointer came to, and at which instant. */
+/* The pointer's arrival, place and instant. */
 typedef struct ethd__led {
   int64_t ns;
   ethd_vec x;
@@ -37,14 +37,14 @@ typedef struct ethd__live {
   bool started;
   atomic_int over, stop;
   ethd_status status;
-  uint64_t late; /* ticks that began a period too late, or more */
+  uint64_t late; /* ticks that began a period or more too late */
 } ethd__live;
 
 /* Begins tap `number` at rest at x, at most `seconds` long. On failure nothing runs. [main] */
 ETHD_MUST_CHECK ethd_status ethd__live_start(ethd__live *live, ethd__stage *stage, const ethd__speed *speed,
                                              uint64_t number, ethd_vec x, double seconds);
 
-/* Says that the pointer came to x at that instant of the clock. [main] */
+/* Passes on the pointer's arrival at x at this instant of the clock. [main] */
 void ethd__live_lead(ethd__live *live, int64_t ns, ethd_vec x);
 
 /* Gives the newest glimpse; false: the tap is over. [main] */

@@ -77,7 +77,7 @@ static double put(ethd__window *w, const ethd__paragraph *p, double y, bool draw
 
 static ethd__paragraph small(const char *text) { return (ethd__paragraph){ETHD_TEXT_SMALL, text, ethd__grey}; }
 
-/* Where the paragraphs may stand, and how much of it they take. */
+/* The room for the paragraphs, and the part that they use. */
 typedef struct page_room {
   double top, bottom, height;
 } page_room;
@@ -111,7 +111,7 @@ static uint64_t mix(uint64_t sum, const char *text) {
   return sum;
 }
 
-/* Tells pages apart, and windows (FNV-1a). */
+/* Distinguishes pages and windows (FNV-1a). */
 static uint64_t sum_of(const ethd__window *w, const ethd__page *page) {
   uint64_t sum = 14695981039346656037u ^ (uint64_t)w->width << 32 ^ (uint64_t)w->height ^ (uint64_t)page->below << 16;
   sum = mix(mix(sum, page->title), page->keys);

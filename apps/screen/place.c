@@ -21,7 +21,7 @@ static ethd__hand_source hand_of(const ethd__place_options *o, const ethd__folde
   return folder->finger ? ETHD_HAND_RECORDED : ETHD_HAND_SIMULATED;
 }
 
-/* This comes before all else, so that nothing moves any more. */
+/* This comes first, so that nothing moves any more. */
 static void close_device(ethd__screen_place *at) {
   char message[ETHD_MESSAGE_MAX];
   if (at->device.self && ethd__station_close(&at->station, message) < 0)
@@ -40,7 +40,7 @@ static void take_device(ethd__screen_place *at, const ethd__place_options *o) {
   at->sitting.source = at->device;
 }
 
-/* Opens the window where one is asked for; else the terminal is used. */
+/* Opens the requested window; without one the terminal is used. */
 static void take_front(ethd__screen_place *at, const ethd__place_options *o) {
   char message[ETHD_MESSAGE_MAX];
   bool people = at->device.self != NULL;

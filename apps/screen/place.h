@@ -1,4 +1,4 @@
-/* All that a session needs at once: its folder, where people tap, what they see. All [main]. */
+/* A session's resources: its folder, its device, its screen. All [main]. */
 #ifndef ETHD__APPS_SCREEN_PLACE_H
 #define ETHD__APPS_SCREEN_PLACE_H
 
@@ -26,10 +26,11 @@ typedef struct ethd__screen_place {
   bool has_screen;
 } ethd__screen_place;
 
-/* Opens everything but the markers, which are open before a new folder is made. Ends the program, before anything moves, on bad input or when device or window can't be opened. */
+/* Opens everything but the markers, which are open before a new folder is made. Ends the program before any motion, on
+   bad input or if device or window can't be opened. */
 void ethd__place_open(const ethd__place_options *options, ethd__screen_place *out);
 
-/* Runs until all is done or somebody stops it; the device is at rest and closed when this returns. */
+/* Runs until all is done or somebody stops it; on return the device is at rest and closed. */
 ETHD_MUST_CHECK ethd_status ethd__place_run(ethd__screen_place *place, bool *over, char message[ETHD_MESSAGE_MAX]);
 
 void ethd__place_close(ethd__screen_place *place);

@@ -1,4 +1,4 @@
-/* A text that people read on the screen before they tap: as many pages as it needs. */
+/* A text that people read on the screen before they tap, in pages. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +26,7 @@ static ethd__page page_of(const ethd__screen *s, const reading *r, char title[25
   return (ethd__page){.title = title, .keys = last ? r->keys : ethd__screen_words(s, ETHD_PHRASE_KEYS_PAGE)};
 }
 
-/* Divides the text anew where the window has another size, and stays at what was read. */
+/* Divides the text again if the window's size has changed, and keeps the reader's place. */
 static void divide(ethd__screen *s, reading *r) {
   const char *at = r->text;
   size_t reader = r->count ? r->begin[r->now] : 0;

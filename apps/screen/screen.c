@@ -159,7 +159,7 @@ static ethd__wish pause_page(ethd__screen *s) {
   return s->stop ? ETHD_WISH_STOP : ETHD_WISH_PAUSE;
 }
 
-/* What the experimenter's key does with the latest tap; GO: nothing. */
+/* The action of the experimenter's key on the latest tap; GO: none. */
 static ethd__wish check(ethd__screen *s, int key, char words[ETHD_MESSAGE_MAX]) {
   if (key == SDLK_u) return ETHD_WISH_UNDO;
   if (!s->good || (key != SDLK_v && key != SDLK_r) || !write_words(s, WORDS(CHECK), words)) return ETHD_WISH_GO;

@@ -1,4 +1,4 @@
-/* A frame's shapes: each takes the place of the one that had its number in the frame before. */
+/* A frame's shapes: each replaces the shape with its number in the frame before. */
 #include <math.h>
 #include <string.h>
 
@@ -95,7 +95,7 @@ void ethd__window_forget(ethd__window *w) {
 
 /* ---- drawing ---- */
 
-/* Clears the shapes that are left of a longer list. */
+/* Clears the remaining shapes of a longer list. */
 static void end_list(ethd__window *w) {
   for (size_t i = w->shape_count; i < w->shape_before; i++) {
     w->changed[w->changed_count++] = w->shape[i].at;

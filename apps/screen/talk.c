@@ -1,4 +1,4 @@
-/* What is said and asked on the screen between taps: hand-over, consent, instruction, the survey. */
+/* The dialogues on the screen between taps: hand-over, consent, instruction, the survey. */
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -25,7 +25,7 @@ static ethd__wish hand_over(ethd__screen *s, const ethd__meeting *meeting) {
   ethd__page page;
   do {
     ethd__page_of_hand_over(q, meeting, "", &page, text);
-    page.count--; /* what is typed takes the last paragraph's place */
+    page.count--; /* the typed line replaces the last paragraph */
     ethd__page_add(&page, ETHD_TEXT_SMALL, refused, ethd__red);
     *line = 0;
     if (!ethd__screen_type(s, &page, line, sizeof line))
@@ -56,12 +56,12 @@ ethd__wish ethd__screen_meet(void *self, const ethd__meeting *meeting) {
                            (const int[]){SDLK_SPACE, SDLK_RETURN, 0}) == SDLK_ESCAPE &&
                  wish != ETHD_WISH_AGREE
              ? ETHD_WISH_STOP
-             : wish; /* a consent that was given is kept, and the stop heard next */
+             : wish; /* a given consent is kept; the stop is handled next */
 }
 
 /* ---- the survey ---- */
 
-#define LINE_ROOM 256 /* bytes that an answer in words takes at most */
+#define LINE_ROOM 256 /* largest number of bytes of an answer in words */
 
 /* Length of the longest prefix of whole letters within a number of bytes. */
 static size_t bytes_within(const char *text, size_t most) {
@@ -108,7 +108,7 @@ static int confirm(ethd__screen *s, const ethd__asked *asked) {
   }
 }
 
-/* A line in the participant's own words, which begins with what was answered before. */
+/* A line in the participant's own words, which begins with the previous answer. */
 static int ask_words(ethd__screen *s, const ethd__asked *asked) {
   ethd__page page = {.title = s->title, .keys = ethd__screen_words(s, ETHD_PHRASE_KEYS_TEXT)};
   ethd__page_add(&page, ETHD_TEXT_LARGE, asked->question[asked->number].text, ethd__white);
@@ -124,7 +124,7 @@ static int digit_of(int key) {
   return key >= SDLK_KP_1 && key <= SDLK_KP_9 ? key - SDLK_KP_1 + 1 : -1;
 }
 
-/* A digit chooses and Enter takes: keys that come fast choose again, and answer one question. */
+/* A digit chooses and Enter confirms: fast digits choose again, and answer one question. */
 static int ask_number(ethd__screen *s, const ethd__asked *asked) {
   const ethd__question *question = &asked->question[asked->number];
   int chosen = asked->answer[asked->number];

@@ -21,8 +21,8 @@ static void begin_tap(ethd__screen *s, ethd_vec from) {
   s->pending = 0;
 }
 
-/* A frame of a tap. False: it shall end, because somebody pressed a key that says so, or because the finger still
-   stands where it was although the time is over. Then there was no tap. */
+/* A frame of a tap. False: the tap must end, because somebody pressed a key for it, or because the finger hasn't moved
+   and the time is over. Then there was no tap. */
 static bool goes_further(ethd__screen *s, double t) {
   static const int keys[] = {SDLK_p, SDLK_n, SDLK_a, 0};
   if (!ethd__screen_begin(s)) return false;

@@ -40,7 +40,7 @@ static ethd_status open_fonts(ethd__window *w, char *message) {
   return ETHD_OK;
 }
 
-/* Where there is no display SDL would draw for nobody to see; that is for those who ask for it. */
+/* Without a display SDL would draw invisibly; that needs an explicit request. */
 static bool choose_display(void) {
   const char *x = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
   if (getenv("SDL_VIDEODRIVER")) return true;
@@ -104,7 +104,7 @@ static void take(ethd__window *w, const SDL_Event *e) {
   }
 }
 
-/* An event's own time stamp is when it was taken from the system, no earlier: so they are taken every millisecond. */
+/* An event's time stamp is the time of its reading from the system, so events are read every millisecond. */
 static void take_motions(ethd__window *w) {
   SDL_Event e;
   SDL_PumpEvents();

@@ -14,11 +14,11 @@
 #include "text/file.h"
 #include "text/text.h"
 
-#define JOURNAL "-journal" /* behind the file's name: SQLite's own, while a transaction is under way */
+#define JOURNAL "-journal" /* after the file's name: SQLite's own, during a transaction */
 
 /* ---- a file ---- */
 
-/* Returns who holds a lock of SQLite's on the file, 0: nobody; -1: somebody on another machine. */
+/* Returns the holder of SQLite's lock on the file; 0: none; -1: on another machine. */
 static pid_t holder(int fd) {
   /* sqlite.org/fileformat2.html, the lock-byte page: bytes 2^30 to 2^30 + 511 */
   struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = 1 << 30, .l_len = 512};

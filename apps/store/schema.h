@@ -1,11 +1,11 @@
-/* The tables of study.sqlite as SQLite keeps their text, with which that of a received file is compared. What a check
-   refuses can't be put; a reader repeats it, because SQLite forgets checks where it may not write. Figures have no
+/* The tables of study.sqlite in SQLite's stored text, which is compared with a received file's. Rows that fail a check
+   can't be inserted; a reader repeats the checks, because SQLite ignores checks where it may not write. Figures have no
    type: as REAL they would lose the sign of a zero. Seeds are text, because integers end at 2^63. */
 #ifndef ETHD__APPS_STORE_SCHEMA_H
 #define ETHD__APPS_STORE_SCHEMA_H
 
 #define ETHD_STORE_APPLICATION 0x65746864 /* "ethd" */
-#define ETHD_STORE_VERSION 2              /* counts up with each change of the tables */
+#define ETHD_STORE_VERSION 2              /* rises by 1 with each change of the tables */
 
 #define ETHD_STORE_FIGURES                                                                                        \
   "v_rvo, v_of, d_max, v_rmin, delta_s, eps, t_rvo, t_of, t_seen, peak_force, finger_radius, commanded, v_hand, " \
@@ -20,7 +20,7 @@ enum { ETHD_STORE_FIGURE_COUNT = 15 };
 
 #define ETHD_STORE_REASONS "('ok', 'fault', 'early-contact', 'too-slow', 'too-fast', 'no-contact', 'grazing', 'double')"
 
-/* What holds for each hand and each tap. */
+/* The rule of each hand and each tap. */
 #define ETHD_STORE_HAND_RULE "word IN ('device', 'mouse', 'simulated', 'recorded')"
 #define ETHD_STORE_TAP_RULE                                                                       \
   "seed || tap NOT GLOB '*[^0-9]*' AND valid = (reason = 'ok') AND reason IN " ETHD_STORE_REASONS \

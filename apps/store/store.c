@@ -12,11 +12,11 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define READ_ONLY "?mode=ro&immutable=1" /* no lock, no journal: nothing is written, whatever the file says */
+#define READ_ONLY "?mode=ro&immutable=1" /* no lock, no journal: nothing is written, for any contents */
 #define CELL_MAX (1 << 24)               /* bytes of a cell, or of a statement in the file */
 #define PATIENCE 5 /* s: time limit for reading a received file, plus one for each PATIENCE_BYTES */
 #define PATIENCE_BYTES 10000000
-#define BEAT 10000 /* steps of SQLite between two looks at the clock */
+#define BEAT 10000 /* steps of SQLite between two readings of the clock */
 
 /* ---- failures ---- */
 
@@ -115,7 +115,7 @@ static char *uri_of(const char *path, const char *query) {
   return uri;
 }
 
-/* What holds for every connection: nothing in a file is run, believed or followed. */
+/* Rules for every connection: nothing in a file is run, believed or followed. */
 static ethd_status guard(ethd__study_store *s, char *message) {
   sqlite3_limit(s->db, SQLITE_LIMIT_LENGTH, CELL_MAX);
   sqlite3_db_config(s->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
@@ -161,7 +161,7 @@ static ethd_status begin(ethd__study_store *s, const char *hash, char *message) 
   return ethd__store_run(s, query, message);
 }
 
-/* Takes the lock, which lasts until the store is closed, and rolls back what was cut short. */
+/* Takes the lock, which lasts until the store is closed, and rolls back an unfinished transaction. */
 static ethd_status prepare(ethd__study_store *s, const char *hash, char *message) {
   static const char settings[] = "PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = DELETE;"
                                  "PRAGMA journal_size_limit = 0; PRAGMA synchronous = FULL; BEGIN EXCLUSIVE";

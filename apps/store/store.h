@@ -1,4 +1,4 @@
-/* A study's file, study.sqlite in its folder: what has happened, one transaction for each event. All [main].
+/* A study's file, study.sqlite in its folder: the session's events, one transaction each. All [main].
 
      study    the hash of the study's inputs       tap      the figures of a tap
      hand     who leads the hand                   answer   to a question, as it stands now
@@ -6,10 +6,10 @@
 
    An event of an attempt says that the experimenter accepted or rejected that tap.
 
-   Participants, blocks, attempts and questions count from 1, points of a grid from 0. What the inputs say (strategy,
-   speed, gains) isn't stored again. SQLite's rollback journal makes each transaction whole and puts it on the disk before
-   the next step: mode DELETE, synchronous FULL. One program writes at a time. The file must be on a local disk, because
-   a network file system may neither lock nor sync. */
+   Participants, blocks, attempts and questions count from 1, points of a grid from 0. The inputs' data (strategy,
+   speed, gains) aren't stored again. SQLite's rollback journal makes each transaction whole and puts it on the disk
+   before the next step: mode DELETE, synchronous FULL. One program writes at a time. The file must be on a local disk,
+   because a network file system may neither lock nor sync. */
 #ifndef ETHD__APPS_STORE_STORE_H
 #define ETHD__APPS_STORE_STORE_H
 
@@ -23,18 +23,18 @@
 typedef struct ethd__study_store {
   sqlite3 *db; /* NULL: none is open */
   char *path;
-  int64_t until; /* ns: by when a received file must have been read; 0: no limit */
+  int64_t until; /* ns: time limit for reading a received file; 0: none */
 } ethd__study_store;
 
 #define ETHD_STORE_NONE ((ethd__study_store){NULL, NULL, 0})
-#define ETHD_STORE_MEMORY ":memory:" /* a path: of a store that is no file */
+#define ETHD_STORE_MEMORY ":memory:" /* a path: of a store without a file */
 
-/* Opens a store to write into it, and locks it against other programs; refuses one of other inputs than `hash` says.
-   Where there is none, or one without a row yet, it begins one with this hash. */
+/* Opens a store to write into it, and locks it against other programs; refuses one with other inputs than
+   `hash`. If there is none, or one without rows, it begins one with this hash. */
 ETHD_MUST_CHECK ethd_status ethd__store_open(const char *path, const char *hash, ethd__study_store *out,
                                              char message[ETHD_MESSAGE_MAX]);
 
-/* Opens a store to read it, whoever made it: nothing is written or run, and no link is followed. Refuses a store that a
+/* Opens any maker's store to read it: nothing is written or run, and no link is followed. Refuses a store that a
    program is writing, or whose last transaction was cut short. */
 ETHD_MUST_CHECK ethd_status ethd__store_read(const char *path, const char *hash, ethd__study_store *out,
                                              char message[ETHD_MESSAGE_MAX]);
@@ -42,10 +42,10 @@ ETHD_MUST_CHECK ethd_status ethd__store_read(const char *path, const char *hash,
 /* Closes the store, if one is open. */
 void ethd__store_close(ethd__study_store *store);
 
-/* Prepares a statement, to which the caller binds values; a failure shows in ethd__store_end. */
+/* Prepares a statement, to which the caller binds values; ethd__store_end reports a failure. */
 sqlite3_stmt *ethd__store_query(ethd__study_store *store, const char *sql);
 
-/* Goes to the next row; false: there is none, or it can't be had, which ethd__store_end says. */
+/* Goes to the next row; false: there is none, or a failure, which ethd__store_end reports. */
 bool ethd__store_next(sqlite3_stmt *query);
 
 /* Ends a statement; NULL is allowed. Its failure leaves the store as it was before. */
@@ -59,11 +59,11 @@ ETHD_MUST_CHECK ethd_status ethd__store_run(ethd__study_store *store, sqlite3_st
 /* Runs statements without values, such as "BEGIN". */
 ETHD_MUST_CHECK ethd_status ethd__store_do(ethd__study_store *store, const char *sql, char message[ETHD_MESSAGE_MAX]);
 
-/* Returns a text cell; "" for NULL. It holds until the next row. */
+/* Returns a text cell; "" for NULL. It is valid until the next row. */
 const char *ethd__store_text(sqlite3_stmt *query, int column);
 
-/* Adds all taps, answers, confirmations, events and hands of another store, which must be readable, behind those of this
-   one. Refuses a tap that both have. */
+/* Adds all taps, answers, confirmations, events and hands of another store, which must be readable, after this store's.
+   Refuses a tap that is in both. */
 ETHD_MUST_CHECK ethd_status ethd__store_add(ethd__study_store *store, const char *path, char message[ETHD_MESSAGE_MAX]);
 
 #endif

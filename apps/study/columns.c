@@ -16,7 +16,7 @@ const char *const ethd__table_names[ETHD_TABLES] = {"taps", "survey", "events", 
   "device=a person's finger in the device's ring|mouse=a person's pointer, which leads the simulated device's" \
   " hand|simulated=the plant's synthetic hand|recorded=a recorded movement"
 
-/* These stand before the columns of taps in a simulation. */
+/* A simulation's table of taps has these columns first. */
 static const ethd__column simulation[] = {
     {"study", "", "the first 12 digits of the study's hash, as versions.txt has it", NULL},
     {"point", "", "which combination of the grid, from 0; the last gain runs fastest", NULL},

@@ -54,7 +54,7 @@ static uint32_t before(const ethd__desk *desk, const ethd__turn *turn) {
   return (turn->attempt - 1) * (is_interleaved ? desk->protocol->taps : 1) + turn->block.round;
 }
 
-/* The movements are dealt out among the participants; every strategy meets the same ones. */
+/* The movements are divided among the participants; every strategy gets the same ones. */
 static size_t movement_of(const ethd__desk *desk, const ethd__turn *turn) {
   size_t k = turn->person + (size_t)desk->protocol->participants * before(desk, turn);
   return (k + (turn->block.training ? desk->movement_count / 2 : 0)) % desk->movement_count;
@@ -112,7 +112,7 @@ ethd_status ethd__desk_prepare(ethd__desk *desk, const ethd__turn *turn, ethd__t
 
 const char *const ethd__hand_words[ETHD_HAND_SOURCES] = {"device", "mouse", "simulated", "recorded"};
 
-/* Names a law that fails once, and not for each tap; all its taps are faults. */
+/* Names a failing law once, not for each tap; all its taps are faults. */
 static void tell_law(ethd__desk *desk, const ethd__law_fault *fault) {
   char text[ETHD_MESSAGE_MAX];
   if (!fault->law || fault->law == desk->told) return;
@@ -163,7 +163,7 @@ static ethd_status refuse(const ethd__protocol *p, int line, const char *key, co
   return ethd__say(message, ETHD_E_RANGE, "%s:%d: %s: %s", p->path, line, key, why);
 }
 
-/* Refuses a word of the study's strategies or speeds: where it stands. */
+/* Refuses a word of the study's strategies or speeds, with its place. */
 static ethd_status refuse_word(const ethd__protocol *p, bool speed, size_t index, const char *what, char *message) {
   const ethd__word_list *words = speed ? &p->speeds : &p->strategies;
   size_t i = 0;

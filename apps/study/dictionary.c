@@ -115,7 +115,7 @@ static void set(json_t *object, const char *key, json_t *value) {
   if (json_object_set_new(object, key, value)) ethd__fail_memory();
 }
 
-/* What a column holds; unit "", levels NULL: none. */
+/* A column's contents; unit "", levels NULL: none. */
 static json_t *entry(const char *meaning, const char *unit, json_t *levels) {
   return json_pack("{s:s, s:o*, s:o*}", "Description", meaning, "Units", *unit ? json_string(unit) : NULL, "Levels",
                    levels);

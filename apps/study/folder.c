@@ -15,7 +15,7 @@
 static const char *const hashed[] = {ETHD_STUDY_FILE, ETHD_RECORDING_CONFIG, ETHD_RECORDING_SCENE, ETHD_STUDY_PLANT,
                                      ETHD_STUDY_CONDITIONS_FILE};
 
-/* folder/name where there is such a file or folder, else NULL. */
+/* folder/name if the file or folder exists, else NULL. */
 static char *existing(const char *folder, const char *name) {
   char *path = ethd__folder_path(folder, name);
   if (ethd__file_taken(path)) return path;
@@ -25,7 +25,7 @@ static char *existing(const char *folder, const char *name) {
 
 /* ---- what the protocol names ---- */
 
-/* A file is looked for beside the study file, then among the files that came with the programs. */
+/* A file is looked for beside the study file, then among the files installed with the programs. */
 static char *find(const ethd__protocol *p, const char *name) {
   char *path = ethd__folder_path(p->folder, name);
   if (strchr(name, '/') || access(path, R_OK) == 0) return path;

@@ -1,12 +1,12 @@
 /* A study's folder: protocol, device, versions and data. All [main].
 
-     study.ini      the study file, as it was read
+     study.ini      the study file, unchanged
      config.ini     the controller's configuration; scene.scene its walls; device.plant the simulated device
-     movement.csv   the recorded movement, when all hands follow one; movements/ when they follow several
-     conditions.csv the table of conditions, when the study has one
+     movement.csv   the recorded movement, if all hands follow one; movements/ if they follow several
+     conditions.csv the table of conditions, if the study has one
      device.folder  with people in a device: where relative paths of its settings start
      versions.txt   program, compiler, and the hash: SHA-256 of all files above but device.folder, concatenated
-     README.md      the data dictionary, with JSON sidecars for programs; orders.csv, what is planned */
+     README.md      the data dictionary, with JSON sidecars for programs; orders.csv, the planned orders */
 #ifndef ETHD__APPS_STUDY_FOLDER_H
 #define ETHD__APPS_STUDY_FOLDER_H
 
@@ -35,7 +35,7 @@ void ethd__folder_device(const ethd__protocol *protocol, ethd__loaded *out);
 /* Reads the conditions of a study that isn't in a folder yet. */
 ETHD_MUST_CHECK ethd_status ethd__folder_conditions(ethd__protocol *protocol, char message[ETHD_MESSAGE_MAX]);
 
-/* What a folder is made of. */
+/* The contents of a new folder. */
 typedef struct ethd__folder_parts {
   const ethd__protocol *protocol;
   const ethd__loaded *loaded;
@@ -43,21 +43,21 @@ typedef struct ethd__folder_parts {
   uint32_t simulated; /* participants of a simulation; 0: a session */
 } ethd__folder_parts;
 
-/* Makes the folder, unless it is there, and its files; leaves it as it is when it holds just this study. Nothing that
-   is there is written over: a folder with another study's files or somebody's own is refused, and one that the study
-   itself is read from. */
+/* Makes the folder, if it is missing, and its files; a folder with exactly this study stays unchanged. No file is
+   overwritten: a folder with another study's or somebody's own files is refused, and also the folder from which the
+   study is read. */
 ETHD_MUST_CHECK ethd_status ethd__folder_make(const char *folder, const ethd__folder_parts *parts,
                                               char message[ETHD_MESSAGE_MAX]);
 
-/* Gives the hash that the folder's versions.txt would say. */
+/* Gives the hash for the folder's versions.txt. */
 ETHD_MUST_CHECK ethd_status ethd__folder_plan_hash(const ethd__folder_parts *parts, char out[ETHD_SHA256_TEXT],
                                                    char message[ETHD_MESSAGE_MAX]);
 
 typedef struct ethd__folder {
   char *path;
   char *finger;       /* the movement for all hands, or the folder of movements; NULL: none */
-  char *device;       /* where relative paths of [device] start; NULL: the folder doesn't say */
-  uint32_t simulated; /* participants of a simulation, as the protocol then has them; 0: a session */
+  char *device;       /* where relative paths of [device] start; NULL: not in the folder */
+  uint32_t simulated; /* participants of a simulation, as in its protocol; 0: a session */
   ethd__protocol protocol;
   ethd__loaded loaded;
   char hash[ETHD_SHA256_TEXT];
@@ -71,8 +71,7 @@ ETHD_MUST_CHECK ethd_status ethd__folder_open(const char *folder, bool plugins, 
                                               char message[ETHD_MESSAGE_MAX]);
 void ethd__folder_close(ethd__folder *folder);
 
-/* Returns how many participants the folder's simulation has; 0 for a session, or where its versions.txt doesn't say it.
- */
+/* Returns how many participants the folder's simulation has; 0 for a session, or if its versions.txt lacks it. */
 uint32_t ethd__folder_simulated(const char *folder);
 
 /* Gives the SHA-256 of the folder's inputs, one after another. */

@@ -24,7 +24,7 @@
 typedef struct wanted_file {
   char *name, *text;
   size_t length;
-  bool hashed; /* says which study it is */
+  bool hashed; /* identifies the study */
 } wanted_file;
 
 typedef struct wanted_list {
@@ -36,7 +36,7 @@ typedef struct wanted_list {
 
 /* ---- what is wanted ---- */
 
-/* Takes the text, which may be NULL: no memory. */
+/* Takes over the text, which may be NULL: no memory. */
 static void want(wanted_list *list, const char *name, char *text, size_t length, bool hashed) {
   wanted_file *more = realloc(list->file, (list->count + 1) * sizeof *more);
   char *copy = strdup(name);
@@ -104,7 +104,7 @@ static ethd_status want_all(wanted_list *list) {
     want_text(list, "orders.csv", ethd__plan_table(parts->protocol), false);
   want_sidecars(list);
   if (parts->protocol->hands != ETHD_HANDS_PEOPLE) return ETHD_OK;
-  /* the configuration is copied away from the files that its device needs */
+  /* the copied configuration is no longer beside the files of its device */
   char *absolute = realpath(config->folder, NULL);
   if (!absolute) return ethd__say(list->message, ETHD_E_FILE, "%s: %s", config->folder, strerror(errno));
   want_text(list, ETHD_STUDY_DEVICE_FOLDER, absolute, false);

@@ -18,7 +18,7 @@
 
 /* ---- a folder of files, no deeper ---- */
 
-/* Calls `each` for every file; false when one failed, errno says why. */
+/* Calls `each` for every file; false: one failed, errno has the reason. */
 static bool every(const char *path, bool (*each)(int folder, const char *name)) {
   DIR *open_folder = ethd__file_list(path);
   bool done = open_folder != NULL;

@@ -21,7 +21,7 @@ void ethd__markers_close(ethd__markers *m) {
   m->socket = -1;
 }
 
-/* A send can report that the datagram before was refused, without sending this one; it is then sent once more. */
+/* A send can report a refusal of the previous datagram without sending this one, which is then sent once more. */
 static bool leaves(int socket, const char *line, size_t length) {
   for (int tries = 0; tries < 2; tries++)
     if (send(socket, line, length, MSG_DONTWAIT | MSG_NOSIGNAL) >= 0) return tries == 0;

@@ -14,7 +14,7 @@ static ethd_status count_taps(ethd__study_store *store, uint64_t *taps, char *me
   return ethd__store_end(store, row, message);
 }
 
-/* Removes what a merge that was killed has left. */
+/* Removes the remains of a killed merge. */
 static void remove_fresh(const ethd__folder *folder) {
   static const char *const names[] = {FRESH "-journal", FRESH};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {

@@ -4,7 +4,7 @@
 
 enum { CELLS = ETHD_STUDY_CONDITIONS };
 
-/* Within each speed, in the order of the conditions, one more of them on for each participant. */
+/* Within each speed, in the order of the conditions, rotated by one for each participant. */
 static void paper(const ethd__protocol *p, uint32_t participant, size_t cell[CELLS]) {
   size_t n = 0;
   for (size_t speed = 0; speed < p->speeds.count; speed++) {
@@ -27,9 +27,9 @@ static void permutation(uint64_t seed, uint32_t stream, size_t count, size_t *ou
 }
 
 /* The square's row: 0, 1, n-1, 2, n-2, .. plus the row; an odd n needs the mirror images too. A number stands for
-   strategy * speeds + speed, so that going down `speeds` rows turns strategies round within each speed: each is first
-   and last at a speed equally often, too. The seed says which strategy and speed a number means, and which row is
-   whose. */
+   strategy * speeds + speed, so that going down `speeds` rows rotates the strategies within each speed: each is also
+   first and last at a speed equally often. The seed assigns strategies and speeds to numbers, and rows to
+   participants. */
 static size_t condition_of(const ethd__protocol *p, size_t strategy, size_t speed) {
   size_t i = 0;
   while (p->condition[i].strategy != strategy || p->condition[i].speed != speed) i++;

@@ -6,7 +6,7 @@
    `random`: all cells shuffled by (seed, participant). `latin`: a balanced Latin square over all cells
    (Williams 1949): over a multiple of the number of cells (twice that, if it is odd) each cell stands at
    each place and follows each other one equally often, and each strategy is equally often first and last at each
-   speed; the seed shuffles which cell is which and who gets which row. A speed's training comes before its first cell,
+   speed; the seed shuffles the cells and the participants' rows. A speed's training comes before its first cell,
    with the strategy that comes last at it.
    `interleaved`: a block is one trial, repeated until it is valid. There are as many rounds of trials as a cell wants valid
    taps. A round has every cell once, in the order of a row of that square; the next round takes the next row. All trainings
@@ -24,7 +24,7 @@ typedef struct ethd__study_block {
   uint32_t round;         /* of trials, from 0; 0 in a study of blocks */
 } ethd__study_block;
 
-/* Return how many valid taps a block wants, and how many it has at most. */
+/* Return a block's required number of valid taps, and its largest number of taps. */
 uint32_t ethd__block_taps(const ethd__protocol *protocol);
 uint32_t ethd__block_attempts(const ethd__protocol *protocol);
 

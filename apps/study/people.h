@@ -1,9 +1,9 @@
-/* Simulated people: what a person brings along is a function of (seed, person) alone.
+/* Simulated people: a person's properties are a function of (seed, person) alone.
 
    The plant's spreads are fitted over all taps of all hands. A share of their variance, `between`, lies
-   between people, the rest within them, so that a crowd of people taps as the plant does. A finger's radius
-   is a person's: nothing of it changes from tap to tap. The spread of the hand's stiffness and damping is
-   invented: nothing of it was fitted. [any] */
+   between people, the rest within them, so that many people together tap as the plant does. A finger's radius
+   belongs to the person and is the same in all taps. The spread of the hand's stiffness and damping is assumed, not
+   fitted. [any] */
 #ifndef ETHD__APPS_STUDY_PEOPLE_H
 #define ETHD__APPS_STUDY_PEOPLE_H
 

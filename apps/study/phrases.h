@@ -1,4 +1,4 @@
-/* The fixed words of the participant's screen, each by its name, with its English default. A study file's section
+/* The fixed phrases of the participant's screen, by name, with their English defaults. A study file's section
    [words] replaces any of them; ethd-study --words prints all of them as such a section, to be translated.
 
      [words]
@@ -77,10 +77,10 @@ typedef struct ethd__phrase {
 /* By their names. */
 extern const ethd__phrase ethd__phrases[ETHD_PHRASES];
 
-/* Puts the values at {1}, {2} ..; what has no room is cut off. [any] */
+/* Inserts the values at {1}, {2} ..; text without room is cut off. [any] */
 void ethd__phrase_fill(char *out, size_t room, const char *phrase, const char *const *values, size_t count);
 
-/* A {..} of the phrase that its default lacks, as it stands there; NULL: it has none. *length: its bytes. [any] */
+/* Returns a {..} of the phrase that its default lacks; NULL: none. *length: its bytes. [any] */
 const char *ethd__phrase_fault(const char *phrase, const char *instead_of, size_t *length);
 
 /* Of Hebrew, Arabic and the other scripts that are written from right to left. [any] */

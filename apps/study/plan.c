@@ -8,9 +8,9 @@
 #include "study/columns.h"
 #include "text/text.h"
 
-#define FARTHEST 4 /* times the cells, up to which another number of participants is looked for */
+#define FARTHEST 4 /* times the cells: bound of the search for another number of participants */
 
-/* How often each strategy came first, last and behind each other one at a speed, among the first participants. In
+/* Counts of each strategy's place at a speed, first, last and after each other one, among the first participants. In
    interleaved trials, in a round. */
 typedef struct balance {
   uint32_t first[ETHD_STUDY_WORDS][ETHD_STUDY_WORDS], last[ETHD_STUDY_WORDS][ETHD_STUDY_WORDS]; /* [speed][strategy] */
@@ -58,7 +58,7 @@ static bool is_even(const ethd__protocol *p, size_t speed, const uint32_t *count
   return least >= most;
 }
 
-/* How rarely and how often at a speed a strategy comes directly behind another. */
+/* The least and largest count of a strategy directly after another at a speed. */
 static void neighbours(const ethd__protocol *p, const balance *b, size_t speed, uint32_t *least, uint32_t *most) {
   for (size_t i = 0; i < p->strategies.count; i++)
     for (size_t j = 0; j < p->strategies.count; j++) {
@@ -78,7 +78,7 @@ static bool is_balanced(const ethd__protocol *p, const balance *b) {
   return even;
 }
 
-/* Returns the next number of participants from `people` on at which everything is balanced, up to FARTHEST times the
+/* Returns the next balanced number of participants from `people` on, up to FARTHEST times the
    cells; 0 if there is none. */
 static uint32_t next_balanced(const ethd__protocol *p, uint32_t people) {
   uint32_t last = people + FARTHEST * (uint32_t)(p->strategies.count * p->speeds.count);

@@ -1,4 +1,4 @@
-/* The orders of a study before it begins: who gets what when, and how well that is balanced. All [main]. */
+/* The participants' orders before a study begins, and their balance. All [main]. */
 #ifndef ETHD__APPS_STUDY_PLAN_H
 #define ETHD__APPS_STUDY_PLAN_H
 
@@ -11,9 +11,9 @@
 /* Returns the text of orders.csv, which the caller frees. */
 char *ethd__plan_table(const ethd__protocol *protocol);
 
-/* For people: each participant's order, the balance at every number of participants, and a warning where the study's
-   own number isn't balanced, with the next one that is. Balanced: at each speed each strategy is as often the first, as
-   often the last, and as often directly behind each other one. */
+/* For people: each participant's order, the balance at every number of participants, and a warning if the study's own
+   number isn't balanced, with the next balanced one. Balanced: at each speed all strategies are equally often first,
+   equally often last, and equally often directly after each other strategy. */
 void ethd__plan_print(FILE *file, const ethd__protocol *protocol);
 
 #endif

@@ -80,7 +80,7 @@ ethd_status ethd__hands_of(ethd__study_store *store, bool out[ETHD_HAND_SOURCES]
   return ethd__store_end(store, row, message);
 }
 
-/* SQL that finds rows of a participant, a block or a point that the study lacks; a cell that is no integer is beyond. */
+/* SQL that finds rows of a participant, a block or a point that the study lacks; a non-integer cell counts too. */
 #define BEYOND(table, first, last) \
   "EXISTS (SELECT 1 FROM " table " WHERE participant NOT BETWEEN 1 AND ?1 OR block NOT BETWEEN " first " AND " last ")"
 
@@ -100,7 +100,7 @@ static const char odd_rows[] = "SELECT " BEYOND("tap", "1", "?2") " OR " BEYOND(
                                   " OR EXISTS (SELECT 1 FROM answer WHERE question NOT BETWEEN 1 AND 9 OR number NOT "
                                   "BETWEEN 0 AND 9)";
 
-/* A question's answers are numbered up to its own last one; a question that isn't there has none. */
+/* A question's answers are numbered up to its own last one; a missing question has none. */
 static ethd_status check_answers(ethd__study_store *store, const ethd__protocol *p, size_t blocks, bool *odd,
                                  char *message) {
   const size_t first[ETHD_ASKINGS] = {0, 1, blocks + 1}, last[ETHD_ASKINGS] = {0, blocks, blocks + 1};

@@ -1,4 +1,4 @@
-/* How far a session has come, by its store alone. All [main]. */
+/* A session's progress, from its store alone. All [main]. */
 #ifndef ETHD__APPS_STUDY_PROGRESS_H
 #define ETHD__APPS_STUDY_PROGRESS_H
 
@@ -8,9 +8,9 @@
 
 #define ETHD_STUDY_SESSION_PEOPLE 10000u
 
-/* How far a block has come. */
+/* A block's progress. */
 typedef struct ethd__progress_of {
-  uint32_t taken, valid; /* valid: those that were rejected don't count */
+  uint32_t taken, valid; /* valid: without the rejected ones */
   uint32_t accepted, rejected;
   bool surveyed; /* asked and confirmed */
 } ethd__progress_of;
@@ -19,20 +19,20 @@ typedef struct ethd__participant {
   uint32_t person;
   ethd__progress_of
       at[ETHD_STUDY_BLOCKS + 2]; /* by block, from 1; 0 and the one behind: the questions of [before], [after] */
-  bool in;                       /* the taps go on, and belong to the analysis */
+  bool in;                       /* the taps continue, and belong to the analysis */
   bool consented;
 } ethd__participant;
 
-/* SQL: the events that say whether a participant is in; the last one counts. */
+/* SQL: the events that decide whether a participant is in; the last one counts. */
 #define ETHD_STUDY_DECISIONS "('abort', 'undo', 'refuse', 'withdraw', 'exclude', 'include')"
 
-/* SQL: "accepted" or "rejected" by the experimenter, of a row of tap; NULL: neither, or it was taken back. */
+/* SQL: "accepted" or "rejected" by the experimenter, of a row of tap; NULL: neither, or undone. */
 #define ETHD_STUDY_CHECKED                                                                                             \
   "(SELECT CASE event WHEN 'accept' THEN 'accepted' WHEN 'reject' THEN 'rejected' END FROM event WHERE "               \
   "event.participant = tap.participant AND event.block = tap.block AND event.attempt = tap.attempt ORDER BY event.id " \
   "DESC LIMIT 1)"
 
-/* Gives what is known of a participant. */
+/* Gives a participant's progress. */
 ETHD_MUST_CHECK ethd_status ethd__participant_of(ethd__study_store *store, uint32_t person, ethd__participant *out,
                                                  char message[ETHD_MESSAGE_MAX]);
 
@@ -52,8 +52,8 @@ ETHD_MUST_CHECK ethd_status ethd__said_of(ethd__study_store *store, uint32_t per
 ETHD_MUST_CHECK ethd_status ethd__hands_of(ethd__study_store *store, bool out[ETHD_HAND_SOURCES],
                                            char message[ETHD_MESSAGE_MAX]);
 
-/* Opens folder/name, to write into it or to read it (store/store.h), and refuses one that holds what the study can't
-   have: rows of nobody, attempts that are missing, answers to no question; and a session of more than
+/* Opens folder/name, to write into it or to read it (store/store.h), and refuses one that contradicts the study: rows
+   of unknown participants, missing attempts, answers to unknown questions; and a session of more than
    ETHD_STUDY_SESSION_PEOPLE participants. */
 ETHD_MUST_CHECK ethd_status ethd__progress_open(const ethd__folder *folder, const char *name, bool write,
                                                 ethd__study_store *out, char message[ETHD_MESSAGE_MAX]);

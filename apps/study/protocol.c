@@ -58,7 +58,7 @@ static ethd_status known_sections(const ethd_ini *ini, const char *name, char *m
   return ETHD_OK;
 }
 
-/* Checks that a questionnaire is complete and that study.survey has it asked. */
+/* Checks that a questionnaire is complete and that study.survey is on for it. */
 static ethd_status check_questions(const ethd__entry *last, const ethd__protocol *p) {
   const char *what;
   char name[24];
@@ -84,7 +84,7 @@ static bool is_outcome(const ethd__protocol *p, const char *word) {
   return false;
 }
 
-/* Checks what the study says about its conditions. */
+/* Checks the study's conditions. */
 static ethd_status check_conditions(const ethd__protocol *p, char *message) {
   size_t trials = p->condition_count * (size_t)p->taps + p->speeds.count;
   if (p->order == ETHD_ORDER_INTERLEAVED && trials > ETHD_STUDY_BLOCKS)

@@ -1,4 +1,4 @@
-/* A study file: who taps on what, how often, and when a tap counts. INI, strict; all [main].
+/* A study file: participants, device, number of taps, and validity of a tap. INI, strict; all [main].
 
      [study]                              [hand]
      name = paper                         source = simulated      recorded, people, mouse
@@ -25,19 +25,19 @@
                                           [before], [survey], [after], [pages],
                                           [words]: see questionnaire.h
 
-     [statistics]                         how far two strategies may differ and still be called alike:
+     [statistics]                         largest difference of equivalent strategies:
      margin_d_max = 0.0003                m: what the paper's sensors resolve
      margin_v_of = 0.02                   m/s: the paper's v_th, below which the ring counts as static
      margin_v_rmin = 0.02
 
-     [outcomes]                           what the study is to show: ethd-report tests these alone as one family
+     [outcomes]                           the study's hypotheses: ethd-report tests these alone as one family
      primary = d_max:smooth-offset:high   FIGURE:STRATEGY-STRATEGY:SPEED[,..], figures as in the report's pairs.csv
-     exclusions = TEXT                    who is left out, in words
+     exclusions = TEXT                    the exclusions, in words
 
    source = recorded follows recorded movements, people are fingers in a device, mouse a pointer on the screen. With
    people, the configuration's [device] is opened as ethd-run does; the plant then only says how fast low and high are.
-   All keys have defaults; the figures above are they, but strategies, speeds and order of the paper.
-   Files are looked for beside the study file, then among those that came with the programs. */
+   All keys have defaults: the figures above, and strategies, speeds and order of the paper.
+   Files are looked for beside the study file, then among those installed with the programs. */
 #ifndef ETHD__APPS_STUDY_PROTOCOL_H
 #define ETHD__APPS_STUDY_PROTOCOL_H
 
@@ -57,7 +57,7 @@
 
 typedef enum ethd__order { ETHD_ORDER_PAPER, ETHD_ORDER_RANDOM, ETHD_ORDER_LATIN, ETHD_ORDER_INTERLEAVED } ethd__order;
 
-/* Whose hands: the simulated device's, on a synthetic or a recorded path, people's on any device, or the mouse's. */
+/* Sources of hands: the simulated device, on a synthetic or a recorded path; people, on any device; the mouse. */
 typedef enum ethd__hands { ETHD_HANDS_SIMULATED, ETHD_HANDS_RECORDED, ETHD_HANDS_PEOPLE, ETHD_HANDS_MOUSE } ethd__hands;
 
 typedef struct ethd__word_list {
@@ -77,12 +77,12 @@ typedef struct ethd__axis {
 } ethd__axis;
 
 typedef struct ethd__protocol {
-  char *path, *text, *folder;                   /* as it was read; relative paths start at folder */
-  char *name, *config, *plant, *scene, *motion; /* NULL where not given, but the name */
+  char *path, *text, *folder;                   /* unchanged; relative paths start at folder */
+  char *name, *config, *plant, *scene, *motion; /* NULL: not given; the name is never NULL */
   uint64_t seed;
   uint32_t participants, training, taps, attempts, rest;
   ethd__word_list strategies, speeds, primary;
-  char *conditions, *condition_path; /* as the key says; the file as it was read; NULL: all combinations */
+  char *conditions, *condition_path; /* the key's path; the file, unchanged; NULL: all combinations */
   ethd__condition condition[ETHD_STUDY_CONDITIONS];
   size_t condition_count;
   char *exclusions; /* NULL: not given */
@@ -105,7 +105,8 @@ ETHD_MUST_CHECK ethd_status ethd__protocol_load(const char *path, ethd__protocol
 ETHD_MUST_CHECK ethd_status ethd__protocol_parse(const char *text, size_t length, const char *name, const char *folder,
                                                  ethd__protocol *out, char message[ETHD_MESSAGE_MAX]);
 
-/* Reads the study's conditions if it has a file of them; `path` is where it is. Until then such a study has none. */
+/* Reads the study's conditions if it has a file of them; `path` is its path. Until then such a study has no
+   conditions. */
 ETHD_MUST_CHECK ethd_status ethd__protocol_conditions(ethd__protocol *protocol, const char *path,
                                                       char message[ETHD_MESSAGE_MAX]);
 

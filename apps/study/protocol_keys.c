@@ -125,7 +125,7 @@ static ethd_status add_word(const ethd__entry *e, ethd__word_list *words, const 
 
 static bool is_any(const char *word) { return *word; }
 
-/* Words as file names have them; of outcomes, which are checked later, any. */
+/* Words with the characters of file names; for outcomes, which are checked later, any words. */
 static ethd_status set_words(const ethd__entry *e, const key_row *row, void *at) {
   bool (*is_word)(const char *) = row && !strcmp(row->section, "outcomes") ? is_any : ethd__file_word;
   ethd__word_list *words = at;
@@ -203,7 +203,7 @@ static ethd_status set_axis(const ethd__entry *e) {
   return set_words(e, NULL, &axis->values);
 }
 
-/* The screen draws UTF-8 text from left to right, so other bytes and scripts that run the other way are refused. */
+/* The screen draws UTF-8 text from left to right, so other bytes and scripts from right to left are refused. */
 static ethd_status check_words(const ethd__entry *e) {
   for (const char *at = e->key->value; *at;) {
     uint32_t letter;
@@ -218,7 +218,7 @@ static ethd_status check_words(const ethd__entry *e) {
   return ETHD_OK;
 }
 
-/* Only the places of the default phrase have a value to be filled in. */
+/* Only the default phrase's places have values. */
 static ethd_status check_places(const ethd__entry *e, const char *instead_of) {
   size_t n = 0;
   const char *place = ethd__phrase_fault(e->key->value, instead_of, &n);

@@ -5,7 +5,7 @@
 #include "study/protocol.h"
 #include "text/ini.h"
 
-/* A key that is being read. */
+/* The present key. */
 typedef struct ethd__entry {
   const char *file;
   const ethd_ini_key *key;
@@ -19,10 +19,10 @@ ethd_status ethd__entry_refuse(const ethd__entry *e, ethd_status status, const c
 
 ETHD_MUST_CHECK ethd_status ethd__entry_set(const ethd__entry *e);
 
-/* Returns whether study files have such a section. */
+/* Returns whether study files have this section. */
 bool ethd__entry_section(const char *section);
 
-/* Gives the word's index, and adds it if it isn't there; false: there is no room for it. */
+/* Gives the word's index, and adds a missing word; false: no room for it. */
 bool ethd__word_list_put(ethd__word_list *words, const char *word, size_t *index);
 
 void ethd__word_list_free(ethd__word_list *words);

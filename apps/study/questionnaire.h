@@ -1,10 +1,10 @@
-/* What a participant is told and asked, in the study's own words. [main] but where said.
+/* The participant's instructions and questions, in the study's own words. [main] unless stated.
 
      [before], [survey], [after]                  [pages]                          and [words], see phrases.h
      q1 = How did the touch feel?                 consent1 = The study takes an hour. You may end it at any time.
      q1_answers = natural | neither | unnatural   instruction1 = Tap once on the green wall.
 
-   Those of [survey] are asked after each block, the others once, before the first tap and after the last one.
+   The questions of [survey] are asked after each block, the others once, before the first tap and after the last one.
    Questions are q1 to q9 without a gap; answers are numbered from 1, two to nine of them, five bare numbers without
    q1_answers. "q1_answers = text" asks for a line in the participant's own words. Consent and instruction are
    paragraphs, consent1 to consent99 and instruction1 to instruction99, in the order of the file; each is a line of any
@@ -26,10 +26,10 @@ typedef struct ethd__question {
   int line;             /* of the file */
 } ethd__question;
 
-/* When questions are asked. */
+/* The times of questions. */
 typedef enum ethd__asking { ETHD_ASK_BEFORE, ETHD_ASK_BLOCK, ETHD_ASK_AFTER, ETHD_ASKINGS } ethd__asking;
 
-/* Their sections; what stands before q1 and so on in the tables. [any] */
+/* Their sections; the prefix of q1 and so on in the tables. [any] */
 extern const char *const ethd__asking_sections[ETHD_ASKINGS], *const ethd__asking_columns[ETHD_ASKINGS];
 
 typedef struct ethd__questionnaire {
@@ -39,12 +39,12 @@ typedef struct ethd__questionnaire {
   bool own;                    /* [survey] has questions of the study's own, not the paper's */
 } ethd__questionnaire;
 
-/* How many questions there are, and numbered answers to one of them: 0 where words are asked for. [any] */
+/* The number of questions, and of numbered answers to one of them: 0 for an answer in words. [any] */
 size_t ethd__question_count(const ethd__question *list);
 size_t ethd__answer_count(const ethd__question *question);
 bool ethd__question_is_text(const ethd__question *question);
 
-/* Writes the words of an answer, which counts from 1; its number if it has none. [any] */
+/* Writes the words of an answer, which counts from 1; its number without words. [any] */
 void ethd__answer_words(const ethd__question *question, int answer, char *out, size_t room);
 
 /* Returns words of the screen: the study's own or the default. [any] */

@@ -45,7 +45,7 @@ static ethd_status have_tap(ethd__sitting *s, const char *id, const ethd__turn *
   return status ? status : ethd__tap_put(&s->store, 0, taken, message);
 }
 
-/* Tells how the latest tap was. */
+/* Shows the latest tap's result. */
 static void tell(ethd__sitting *s) {
   const ethd__turn *turn = &s->latest.turn;
   const ethd__progress_of *at = &s->who.at[turn->number];
@@ -72,7 +72,7 @@ static ethd_status run_tap(ethd__sitting *s, const char *id, const ethd__turn *t
   return status;
 }
 
-/* A device that has stopped itself goes on once somebody has seen to it. */
+/* A device that has stopped itself continues once somebody has checked it. */
 static ethd_status see_to_device(ethd__sitting *s, const ethd__turn *turn, char *message) {
   const ethd__source *source = &s->source;
   const char *why;
@@ -90,7 +90,7 @@ static ethd_status see_to_device(ethd__sitting *s, const ethd__turn *turn, char 
 
 /* ---- what people say ---- */
 
-/* Accepts or rejects the latest tap, or takes this back. A block that was over may then be due again. */
+/* Accepts or rejects the latest tap, or undoes this. A finished block may then need taps again. */
 static ethd_status check(ethd__sitting *s, const ethd__turn *turn, const char *event, const char *why, char *message) {
   const ethd__turn *tap = &s->latest.turn;
   if (!tap->attempt || s->latest.result.metrics.reason != ETHD_TAP_OK) return ETHD_OK;
@@ -113,7 +113,7 @@ static ethd_status undo(ethd__sitting *s, char *message) {
   return ethd__sitting_event(s, who, "undo", "", message);
 }
 
-/* *go: the next tap may come, or the next block where this one is `over`. */
+/* *go: the next tap may begin, or, if this block is `over`, the next block. */
 static ethd_status hear(ethd__sitting *s, const ethd__turn *turn, bool over, bool *go, bool *stop, char *message) {
   static const char *const kinds[ETHD_WISHES] = {[ETHD_WISH_NOTE] = "note",
                                                  [ETHD_WISH_PAUSE] = "pause",
@@ -155,7 +155,7 @@ static bool block_due(const ethd__sitting *s, const ethd__turn *turn) {
   return s->who.in && !ethd__block_over(&s->folder->protocol, &turn->block, at->taken, at->valid);
 }
 
-/* After the last tap people see how it was, and the experimenter may reject it: then one more is due. */
+/* After the last tap people see its result, and the experimenter may reject it: then one more is needed. */
 static ethd_status run_block(ethd__sitting *s, const char *id, ethd__turn *turn, bool *stop, char *message) {
   const ethd__protocol *p = &s->folder->protocol;
   ethd_status status = ETHD_OK;
@@ -202,7 +202,7 @@ static ethd_status run_person(ethd__sitting *s, uint32_t person, bool *stop, cha
   return status;
 }
 
-/* The store is closed before the sums are taken, because it has one until then. */
+/* The store is closed before the sums are computed, because it has one until then. */
 static ethd_status export(ethd__sitting *s, char *message) {
   ethd_status status = ethd__tables_write(s->folder, &s->store, message);
   ethd__store_close(&s->store);
@@ -237,7 +237,7 @@ static ethd_status decide(ethd__sitting *s, ethd__about about, const char *event
   return status ? status : export(s, message);
 }
 
-/* Only a tap that counts otherwise can be accepted or rejected. */
+/* Only a valid tap can be accepted or rejected. */
 static ethd_status find_tap(ethd__study_store *store, ethd__about about, char *message) {
   sqlite3_stmt *row =
       ethd__store_query(store, "SELECT valid, reason FROM tap WHERE participant = ? AND block = ? AND attempt = ?");

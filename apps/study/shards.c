@@ -40,7 +40,7 @@ static ethd_status count_shards(const ethd__folder *folder, uint32_t *count, cha
 
 /* ---- merging ---- */
 
-/* Refuses a shard that isn't there, isn't at its end, or isn't this study's. */
+/* Refuses a missing or unfinished shard, or one of another study. */
 static ethd_status check_shard(const ethd__folder *folder, const ethd__shard *shard, const char *name, char *message) {
   ethd__study_store store;
   uint64_t done, units = ethd__shard_units(&folder->protocol, shard);

@@ -58,7 +58,7 @@ static ethd_status refuse_hand(const ethd__sitting *s, const bool hand[ETHD_HAND
                    folder, ethd__hand_words[whose], folder, whose == ETHD_HAND_MOUSE ? " --screen" : "");
 }
 
-/* Refuses another hand than the one that led the taps so far; the first one is written down. */
+/* Refuses another hand than the one that led the taps so far; the first one is stored. */
 static ethd_status take_hand(ethd__sitting *s, ethd__hand_source hand, char *message) {
   bool is[ETHD_HAND_SOURCES], any = false;
   ethd_status status = ethd__hands_of(&s->store, is, message);

@@ -22,8 +22,8 @@ static void rest(long ns) {
 
 /* ---- rows, on the recorder's thread ---- */
 
-/* An acknowledged device was enabled shortly before the tap enables it again, and where the recorder is late that row
-   comes first: the tap begins with the last row that was started. */
+/* An acknowledged device was enabled shortly before the tap enables it again, and if the recorder is late that row
+   comes first: the tap begins with the last row of a start. */
 static void begin(ethd__station *s, const ethd_loop_row *row) {
   const bool is_first = s->phase == ETHD_PHASE_DUE;
   s->phase = ETHD_PHASE_TAP;
@@ -142,8 +142,8 @@ static bool follow(ethd__station *s) {
   return set_phase(s, ETHD_PHASE_IDLE) == ETHD_PHASE_OVER;
 }
 
-/* A finger that stood at its place until the time was over has made no tap: somebody rested, or went away. A fault
-   counts whatever the finger did. */
+/* A finger that stood at its place until the time was over has made no tap: the person rested, or went away. A fault
+   counts in any case. */
 static bool was_tap(const ethd__tap_rows *rows) {
   const double *from = NULL;
   for (size_t i = 0; i < rows->count; i++) {
@@ -183,7 +183,7 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
 
 /* ---- a device that has stopped itself ---- */
 
-/* Somebody has seen to the fault; if it is still there, it stops the device again. */
+/* Somebody has acknowledged the fault; if it persists, it stops the device again. */
 static ethd_status acknowledge(void *self, char message[ETHD_MESSAGE_MAX]) {
   ethd__station *s = self;
   double until = ethd__session_time(&s->session) + CLEAN, needed;

@@ -1,10 +1,10 @@
-/* Where people tap: a device under ethd-run's loop, which goes on between the taps. All [main].
+/* A station where people tap: a device under ethd-run's loop, which runs between the taps too. All [main].
 
      prepare   enable          the wall is met    + 0.15 s
         |---------|-----------------|-----------------|        a tap: rows of the loop from its enabling on
      the ring follows the finger from tap to tap
 
-   Each tap begins with the device enabled anew: what the recording needs to replay it is in its own rows. */
+   Each tap begins with a new enabling of the device: its own rows hold all data for its replay. */
 #ifndef ETHD__APPS_STUDY_STATION_H
 #define ETHD__APPS_STUDY_STATION_H
 
@@ -21,25 +21,25 @@ typedef struct ethd__station {
   ethd__session session;
   ethd__stage stage; /* the present tap's; no simulation */
   ethd__watcher watcher;
-  double slack; /* m: how near to the ring a finger touches it, as far as radius and filter know */
+  double slack; /* m: largest distance of a touching finger from the ring, by radius and filter */
 
-  pthread_mutex_t lock; /* for what follows, of the tap that is being taken */
+  pthread_mutex_t lock; /* for the following members, of the present tap */
   ethd__phase phase;
   ethd__rule rule;
   ethd__turn turn;
   bool touched;
   ethd__approach approach;
-  size_t last; /* the last row, as far as is known */
+  size_t last; /* the last row known so far */
   int64_t begin_ns;
   ethd_status status; /* of its rows */
 
-  pthread_t keeper; /* sends the loop the program's beat, and the signal to end */
+  pthread_t keeper; /* passes the program's beat and the signal to end to the loop */
   atomic_int end;
   bool kept;
 } ethd__station;
 
 /* Opens and starts the configuration's device. folder: where its relative paths start, NULL: beside the
-   configuration. is_virtual: in lock-step, as fast as it goes. On failure nothing runs. */
+   configuration. is_virtual: in lock-step, as fast as possible. On failure nothing runs. */
 ETHD_MUST_CHECK ethd_status ethd__station_open(ethd__desk *desk, const char *config, const char *folder,
                                                bool is_virtual, ethd__station *out, char message[ETHD_MESSAGE_MAX]);
 

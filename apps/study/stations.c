@@ -82,7 +82,7 @@ ethd_status ethd__stations_fit(const char *const *folders, size_t count, char me
 
 typedef struct copying {
   const char *from, *out;
-  bool first; /* the first station brings the inputs along, each its taps */
+  bool first; /* the inputs are the first station's; the taps are each station's */
   char *message;
 } copying;
 
@@ -91,7 +91,7 @@ static void make_parents(const char *out, const char *path) {
     ETHD__FREED char *within = strndup(path, (size_t)(slash - path));
     if (!within) ethd__fail_memory();
     ETHD__FREED char *folder = ethd__folder_path(out, within);
-    (void)ethd__file_make_folder(folder); /* there already, or the file in it says why not */
+    (void)ethd__file_make_folder(folder); /* it may exist; an error shows at the file in it */
   }
 }
 
@@ -112,7 +112,7 @@ static ethd_status copy_file(void *user, const char *path) {
 
 /* ---- the stores ---- */
 
-/* Says in the store that what follows comes from this folder's. */
+/* Marks the next rows in the store as this folder's. */
 static ethd_status put_origin(ethd__study_store *out, const char *folder, const char *path, char *message) {
   char sum[ETHD_SHA256_TEXT];
   ETHD__FREED char *detail = NULL;

@@ -194,7 +194,7 @@ ethd_status ethd__sums_write(const char *folder, char message[ETHD_MESSAGE_MAX])
 
 /* ---- checking ---- */
 
-/* Says which file is wrong first, and how many are. */
+/* Gives the first wrong file and the number of wrong files. */
 typedef struct fault {
   const char *path, *what;
   size_t count;

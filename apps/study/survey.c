@@ -24,7 +24,7 @@ static ethd_status put_survey(ethd__sitting *s, const ethd__turn *turn, char *me
   return ethd__sitting_put(s, insert, message);
 }
 
-/* Puts an answer, in the place of an earlier one. Words count as 1. */
+/* Stores an answer, and replaces an earlier one. Words count as 1. */
 static ethd_status put_answer(ethd__sitting *s, const ethd__turn *turn, const ethd__asked *asked, int said,
                               char *message) {
   const ethd__question *question = &asked->question[asked->number];
@@ -37,7 +37,7 @@ static ethd_status put_answer(ethd__sitting *s, const ethd__turn *turn, const et
   return ethd__sitting_put(s, insert, message);
 }
 
-/* Who comes back goes on at the first question that has no answer. */
+/* A returning participant continues at the first question without an answer. */
 ethd_status ethd__survey_run(ethd__sitting *s, const char *id, const ethd__turn *turn, bool *stop,
                              char message[ETHD_MESSAGE_MAX]) {
   const ethd__question *question = s->folder->protocol.questionnaire.question[asking_of(turn)];

@@ -11,7 +11,7 @@
 
 /* ---- what SQL asks of the study ---- */
 
-/* The study, and the order of the participant that was asked for last; rows often come participant by participant. */
+/* The study, and the order of the last requested participant; rows often come participant by participant. */
 typedef struct study_view {
   const ethd__protocol *protocol;
   int64_t participant; /* from 1; 0: none yet */
@@ -32,7 +32,7 @@ static void sql_id(sqlite3_context *context, int count, sqlite3_value **value) {
   sqlite3_result_text(context, id, -1, SQLITE_TRANSIENT);
 }
 
-/* Returns a block by the arguments (participant, block); the first one where there is no such block. */
+/* Returns a block by the arguments (participant, block); the first one if there is no such block. */
 static ethd__study_block block_of(sqlite3_context *context, sqlite3_value **value) {
   study_view *view = sqlite3_user_data(context);
   const int64_t participant = sqlite3_value_int64(value[0]), number = sqlite3_value_int64(value[1]);
@@ -121,7 +121,7 @@ static void select_events(FILE *sql, const ethd__folder *folder) {
   fputs("SELECT utc, id(participant), block, attempt, event, detail FROM event ORDER BY id", sql);
 }
 
-/* Everybody has a row who has tapped or answered, or about whom something was decided, then with its reason. */
+/* A row for every participant with a tap, an answer, or a decision, with the decision's reason. */
 static void select_participants(FILE *sql, const ethd__folder *folder) {
   const ethd__protocol *p = &folder->protocol;
   ethd__study_block blocks[ETHD_STUDY_BLOCKS];
@@ -162,7 +162,7 @@ static void (*const select_rows[ETHD_TABLES])(FILE *sql, const ethd__folder *fol
     [ETHD_TABLE_EVENTS] = select_events,
     [ETHD_TABLE_PARTICIPANTS] = select_participants};
 
-/* A simulation has but taps. */
+/* A simulation has taps only. */
 static bool has(const ethd__folder *folder, ethd__study_table table) {
   return select_rows[table] && (!folder->simulated || table == ETHD_TABLE_TAPS);
 }

@@ -1,4 +1,4 @@
-/* The tables for people, which follow from a folder's store. All [main]. */
+/* The tables for people, made from a folder's store. All [main]. */
 #ifndef ETHD__APPS_STUDY_TABLES_H
 #define ETHD__APPS_STUDY_TABLES_H
 
@@ -9,7 +9,7 @@
 ETHD_MUST_CHECK ethd_status ethd__tables_write(const ethd__folder *folder, ethd__study_store *store,
                                                char message[ETHD_MESSAGE_MAX]);
 
-/* Gives the text of these tables, freed by the caller; NULL for those that were written as the folder was made. Exit 1
+/* Gives the text of these tables, freed by the caller; NULL for the tables from the folder's creation. Exit 1
    without memory. */
 ETHD_MUST_CHECK ethd_status ethd__tables_of(const ethd__folder *folder, ethd__study_store *store,
                                             char *out[ETHD_TABLES], char message[ETHD_MESSAGE_MAX]);

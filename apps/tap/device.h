@@ -5,7 +5,7 @@
 #include "ethd/config.h"
 #include "sim/settings.h"
 
-/* Refuses another driver than sim, and keys that it doesn't know. */
+/* Refuses a driver other than sim, and unknown keys. */
 ETHD_MUST_CHECK ethd_status ethd__device_read(const ethd_config *config, ethd__sim_settings *out,
                                               char message[ETHD_MESSAGE_MAX]);
 

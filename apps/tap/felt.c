@@ -6,7 +6,7 @@ static double along(ethd_vec n, const double v[2]) { return n.x * v[0] + n.y * v
 
 static size_t ticks(const ethd__rule *rule, double seconds) { return (size_t)floor(seconds / rule->period + 0.5); }
 
-/* Where the voluntary path crosses the touch plane. */
+/* The voluntary path's crossing of the touch plane. */
 static double path_speed(const ethd__tap_rows *rows, const ethd__rule *rule, size_t begin) {
   for (size_t i = begin + 1; i < rows->count; i++) {
     double here = along(rule->n, rows->truth[i].hand), before = along(rule->n, rows->truth[i - 1].hand);
@@ -16,7 +16,7 @@ static double path_speed(const ethd__tap_rows *rows, const ethd__rule *rule, siz
 }
 
 /* A device doesn't measure the hand's voluntary path. The finger's mean speed in the last ETHD_TAP_CARRIED s before the
-   touch stands for the hand's speed. */
+   touch is used as the hand's speed. */
 static double carried_speed(const ethd__tap_rows *rows, const ethd__rule *rule, size_t begin, size_t touch) {
   size_t back = ticks(rule, ETHD_TAP_CARRIED);
   size_t from = touch > begin + back ? touch - back : begin;
@@ -40,7 +40,7 @@ static size_t ready_from(const ethd__tap_rows *rows, const ethd__rule *rule, siz
 }
 
 /* Returns the wall's offset ETHD_TAP_FELT s after the touch. If no wall is rendered at that tick, returns the last
-   offset since the touch; NaN: there was none. */
+   offset since the touch; NaN: none. */
 static double offset_after(const ethd__tap_rows *rows, const ethd__rule *rule, size_t touch) {
   size_t last = touch + ticks(rule, ETHD_TAP_FELT);
   double eps = NAN;

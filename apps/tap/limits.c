@@ -1,4 +1,4 @@
-/* Largest multiple of each gain, found as in an experiment: it is raised until the ring no longer rests. */
+/* Finds the largest multiple of each gain as in an experiment: raises it until the ring no longer rests. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,14 +13,14 @@
 #define NARROWINGS 3  /* halvings of that step */
 #define RESTLESS 0.02 /* m/s: the paper's v_th */
 #define WINDOW 0.2    /* s over which the speed counts */
-#define AWAY 0.05     /* m before the wall: where the finger rests, or comes from */
+#define AWAY 0.05     /* m before the wall: the finger's rest or starting point */
 #define REST 0.6      /* s of a try in free space */
 #define COME 0.5      /* s until a pressing finger is at the wall */
 #define PRESS 1.2     /* s of its try */
-#define FORCE 2.5     /* N with which it presses */
+#define FORCE 2.5     /* N: force with which it presses */
 #define FIRST_TAP (UINT64_C(1) << 41) /* no other tap has these numbers */
 
-/* The finger's path in a try: at rest, or to where its hand presses with FORCE through wall, pad and itself. */
+/* The finger's path in a try: at rest, or until its hand presses with FORCE through wall, pad and itself. */
 static void lead(const ethd__stage *stage, bool presses, ethd_sim_tap *tap, ethd_path_sample path[2]) {
   const ethd__study *study = stage->study;
   const ethd_plant *p = &study->plant;
@@ -113,7 +113,7 @@ static ethd_status find_limit(const ethd__study *study, const char *key, bool pr
   return status;
 }
 
-/* Gives both limits of a pair, the lesser one, how much the rms grows up to it, and the rms at the gains as they are. */
+/* Gives both limits of a pair, the smaller one, the rms's growth up to it, and the rms at the present gains. */
 static ethd_status take_pair(const ethd__study *study, const char *const keys[2], bool presses, double limits[2],
                              double least[2], double *hum, char *message) {
   double there, half;

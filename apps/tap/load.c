@@ -26,7 +26,7 @@ static char *joined(const char *a, const char *b) {
 
 static bool came_along(const char *plant) { return strlen(plant) == 1 && strchr("qnbp", *plant); }
 
-/* "n" and ".ini" to the file that came with the programs; "my/dev", "my/dev.plant" to my/dev.ini. */
+/* "n" and ".ini" to the file installed with the programs; "my/dev", "my/dev.plant" to my/dev.ini. */
 static char *beside_plant(const char *plant, const char *suffix) {
   size_t length = strlen(plant);
   if (length > 6 && !strcmp(plant + length - 6, ".plant")) length -= 6;
@@ -53,7 +53,7 @@ static void load_plant(const char *plant, bool simulated, ethd__loaded *out) {
   if (simulated) ethd__sim_settings_finger(&device, &out->plant);
 }
 
-/* Returns the text with `own` in place of its line; line 0: behind it, in a section. */
+/* Returns the text with its line replaced by `own`; line 0: `own` after it, in a section. */
 static char *with_line(const char *text, int line, const char *own) {
   char *out = NULL;
   const char *after = line ? text : text + strlen(text);
@@ -77,7 +77,7 @@ void ethd__load_scene(ethd__loaded *loaded, const char *scene) {
   free(absolute);
 }
 
-/* A configuration without a scene gets the paper's wall, as if it named it. */
+/* A configuration without a scene gets the paper's wall. */
 static void take_wall(ethd__loaded *loaded) {
   char *wall = ethd__data_path("wall.scene");
   ethd__load_scene(loaded, wall);

@@ -5,22 +5,22 @@
 #include "tap/metrics.h"
 
 #define ETHD_TAP_AFTER 0.15 /* s from t_r/vo to the end of a tap */
-#define ETHD_TAP_LOST 0.3   /* s from the end of the path, when the ring hasn't met a wall */
+#define ETHD_TAP_LOST 0.3   /* s from the end of the path, if the ring hasn't met a wall */
 
-/* Forgets what the controller was doing, but for what its law has `learned` (ETHD_MEMORY numbers), starts `tap` and
-   steps until it is over; rows hold its ticks, the first at time 0. ETHD_E_MEMORY, or what ethd_sim_start says; faults
-   of the controller stand in the rows and end nothing. */
+/* Resets the controller except its law's memory `learned` (ETHD_MEMORY numbers), starts `tap` and steps to its end;
+   rows hold its ticks, the first at time 0. ETHD_E_MEMORY, or the error of ethd_sim_start; the controller's faults are
+   in the rows and don't end the tap. */
 ETHD_MUST_CHECK ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
                                           const double *learned, const ethd__rule *rule, ethd__tap_rows *rows);
 
-/* A tap that is run one tick at a time, for a caller who leads the finger meanwhile. Rule and rows outlive it. */
+/* A tap that is run one tick at a time, so that the caller can lead the finger meanwhile. Rule and rows outlive it. */
 typedef struct ethd__tapping {
   ethd_sim *sim;
   ethd_control *control;
   const ethd__rule *rule;
   ethd__tap_rows *rows;
   ethd__approach approach;
-  size_t last; /* the last tick, as far as is known */
+  size_t last; /* the last tick known so far */
 } ethd__tapping;
 
 ETHD_MUST_CHECK ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,

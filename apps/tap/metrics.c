@@ -52,7 +52,7 @@ static size_t touch_from(const ethd__tap_rows *rows, size_t i) {
   return i;
 }
 
-/* Each extremum counts once the ring has turned back by the hysteresis. */
+/* Each extremum counts once the ring has moved back by the hysteresis. */
 static double rebound(const ethd__tap_rows *rows, ethd_vec n, int32_t side, size_t from) {
   double peak = -INFINITY, valley = NAN;
   bool turned = false;
@@ -80,14 +80,14 @@ static double slowest(const ethd__tap_rows *rows, const ethd__rule *rule, size_t
   return isinf(least) ? (double)NAN : least;
 }
 
-/* Periods from row to row, those that a live loop missed among them. */
+/* Periods from row to row, including those that a live loop missed. */
 static size_t periods(const ethd__tap_rows *rows, size_t from, size_t to) {
   size_t n = to - from;
   for (size_t i = from + 1; i <= to; i++) n += (size_t)rows->trace[i].sense.missed;
   return n;
 }
 
-/* Delta_s and eps, for laws that brake. One that has braked before the wall has no time of braking from the wall on. */
+/* Delta_s and eps, for laws that brake. A law that has braked before the wall has no time of braking after it. */
 static void braking(const ethd__tap_rows *rows, const ethd__rule *rule, size_t from, ethd__metrics *out) {
   size_t i = from;
   while (i < rows->count && rows->trace[i].state != ETHD_BRAKING) i++;
@@ -99,7 +99,7 @@ static void braking(const ethd__tap_rows *rows, const ethd__rule *rule, size_t f
   out->eps = rows->trace[i].eps;
 }
 
-/* The pad's front is at the wall that the eye has. */
+/* The pad's front is at the visible wall. */
 static size_t sight_from(const ethd__tap_rows *rows, const ethd__rule *rule, size_t i) {
   while (i < rows->count && !(along(rule->n, rows->truth[i].finger) >= rule->seen)) i++;
   return i;

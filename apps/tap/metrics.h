@@ -6,10 +6,10 @@
             |                  .-'         '._.-----     valley
             +--------------------------------------> t   t_of/r: first tick with the pad touching
 
-   The touch itself lies before t_of/r; v_of is the line's between the speeds at the ticks around it, at which the pad's
-   depth, also on a line, is 0. t_r/vo is the first tick with the controller's d_re < 0. A recorded movement may start with the ring in
-   the wall: the tap then begins once the ring is clear of it again, and would be if it were centred on the
-   hand, both by more than d_beta. */
+   The touch itself lies before t_of/r. v_of is interpolated linearly between the ticks around it, at the instant at
+   which the pad's depth, also interpolated linearly, is 0. t_r/vo is the first tick with the controller's d_re < 0. A
+   recorded movement may start with the ring in the wall: the tap then begins once the ring is clear of the wall by more
+   than d_beta, and would be clear by more than d_beta if it were centred on the hand. */
 #ifndef ETHD__APPS_TAP_METRICS_H
 #define ETHD__APPS_TAP_METRICS_H
 
@@ -42,17 +42,17 @@ typedef struct ethd__rule {
   double meet;        /* m: the ring's centre along n as it meets the wall */
   double d_beta;      /* m */
   bool never_fast;    /* the recorded movement never was that fast: too slow */
-  double seen;        /* m: the finger's centre along n as its pad's front is at the wall */
+  double seen;        /* m: the finger's centre along n with its pad's front at the wall */
   ethd__validity validity;
-  bool carried; /* a device's tap: the hand's path isn't known, so the finger's speed before the touch stands for it */
+  bool carried; /* a device's tap: the hand's path isn't known, so the finger's speed before the touch is used */
   double graze; /* s: a tap whose pad touches for less in all is grazing; 0: none */
   bool single;  /* a finger that leaves the wall by `lift` after its touch and comes back makes a */
   double lift;  /* m: double tap */
 } ethd__rule;
 
-/* Looks for t_r/vo tick by tick. It begins all zero and gets every tick in turn. */
+/* Finds t_r/vo tick by tick. Initially all zero; gets every tick in order. */
 typedef struct ethd__approach {
-  size_t count, begin; /* ticks seen; where the tap begins, once it has */
+  size_t count, begin; /* ticks so far; the tap's first tick, once begun */
   bool begun, met;
 } ethd__approach;
 
@@ -79,19 +79,19 @@ typedef enum ethd__reason {
 
 extern const char *const ethd__reason_words[ETHD_TAP_REASON_COUNT];
 
-/* The figures of a tap; NaN where one isn't defined. Speeds and depths are along n, > 0 into the wall. */
+/* The figures of a tap; NaN: not defined. Speeds and depths are along n, > 0 into the wall. */
 typedef struct ethd__metrics {
   ethd__reason reason;             /* by the rule's validity: one of these two */
   ethd__reason by_ring, by_finger; /* by the paper's, by the finger's */
   double v_rvo, v_of;              /* m/s: the ring's as it meets the wall, as the finger touches it */
   double v_of_tick;                /* m/s: the ring's at t_of */
-  double d_max;                    /* m: first rebound of the measured side; 0 when it never turns back */
+  double d_max;                    /* m: first rebound of the measured side; 0: it never reverses */
   double d_max_ring;               /* m: first rebound of the true ring */
   double v_rmin;                   /* m/s: smallest after t_of */
   double delta_s;                  /* ms: first braking tick from t_r/vo on to first vo tick; NaN: it braked before */
   double eps;                      /* m: offset at that vo tick */
   double t_rvo, t_of;              /* s of the tap */
-  double t_seen;                   /* s of the tap: the finger's avatar reaches the wall that is seen */
+  double t_seen;                   /* s of the tap: the finger's avatar reaches the visible wall */
   double v_hand;                   /* m/s: these three as in ethd__felt */
   double touch_depth;              /* m */
   double eps_felt;                 /* m */
@@ -101,7 +101,7 @@ typedef struct ethd__metrics {
 
 void ethd__metrics_of(const ethd__tap_rows *rows, const ethd__rule *rule, ethd__metrics *out);
 
-/* Returns the tick t_r/vo, rows->count if there is none. */
+/* Returns the tick t_r/vo; rows->count: none. */
 size_t ethd__metrics_meeting(const ethd__tap_rows *rows, const ethd__rule *rule);
 
 #endif

@@ -173,7 +173,7 @@ static ethd__movement_form form_of_movement(void) {
   return form;
 }
 
-/* The option's text is cut in two where it stands. */
+/* Cuts the option's text in two in place. */
 static void add_gain(char *text) {
   char quote[ETHD_QUOTE_MAX], *equals = strchr(text, '=');
   if (!equals || !strchr(text, '.') || strchr(text, '.') > equals)

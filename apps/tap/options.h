@@ -44,8 +44,8 @@ extern const struct argp ethd__reach_argp;
 /* Reads the words of --speed; exits 2 on another word. */
 void ethd__speeds_read(const ethd__tap_words *words, const ethd_plant *plant, ethd__speed *out);
 
-/* If no law is asked for, chooses all of this library and the configuration's own; with an arm, where own is NULL, all
-   that work under velocity commands. */
+/* Without a --law, chooses all laws of this library and of the configuration; with an arm, own NULL, all laws for
+   velocity commands. */
 void ethd__tap_laws_choose(ethd__tap_options *options, const char *own);
 
 #endif

@@ -8,7 +8,7 @@
 #include "cli/cli.h"
 #include "tap/summary.h"
 
-#define FEWEST 6       /* valid taps that make a statistic */
+#define FEWEST 6       /* valid taps of a statistic, at least */
 #define TURN 0.3e-3    /* m: smallest reversal of an oscillation, */
 #define TURN_END 0.1   /* s after t_r/vo */
 #define BEYOND 1e-3    /* m: largest distance of the ring behind x_eps, */
@@ -28,10 +28,10 @@ static const struct {
 
 /* ---- taps ---- */
 
-/* Figures of a tap beside those of metrics.h. */
+/* Figures of a tap in addition to metrics.h. */
 typedef struct watched {
   double turns; /* of the measured side */
-  bool held;    /* the ring stayed before x_eps + BEYOND */
+  bool held;    /* the ring never passed x_eps + BEYOND */
 } watched;
 
 typedef struct taps {

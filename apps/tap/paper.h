@@ -62,9 +62,10 @@ enum {
    [main] */
 ETHD_MUST_CHECK ethd_status ethd__paper_print(const ethd__study *study, uint64_t taps, char message[ETHD_MESSAGE_MAX]);
 
-/* Fills the lines of gains; NaN: the configuration's law has no such gain. A gain has no rest from the multiple on at which
-   the speed of the measured side along n exceeds 20 mm/s (rms over 0.2 s, median of eight tries), with the finger at rest
-   (tracking) or pressing 2.5 N (wall); 1: not even now, 8: at none that was tried. [main, in limits.c] */
+/* Fills the lines of gains; NaN: the configuration's law has no such gain. A gain's ring no longer rests from the first
+   multiple at which the speed of the measured side along n exceeds 20 mm/s (rms over 0.2 s, median of eight tries),
+   with the finger at rest (tracking) or pressing 2.5 N (wall); 1: not even now, 8: at none that was tried. [main, in
+   limits.c] */
 ETHD_MUST_CHECK ethd_status ethd__paper_limits(const ethd__study *study, double out[ETHD_PAPER_COUNT],
                                                char message[ETHD_MESSAGE_MAX]);
 

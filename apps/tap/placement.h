@@ -23,7 +23,7 @@
 
 /* How a file writes a movement. */
 typedef struct ethd__movement_form {
-  const char *columns[3]; /* names of time, x and y; a '-' before a name turns the axis */
+  const char *columns[3]; /* names of time, x and y; a '-' before a name reverses the axis */
   double time, length;    /* s and m in one unit of the file */
 } ethd__movement_form;
 
@@ -37,8 +37,8 @@ typedef struct ethd__movement {
 
 /* Reads a CSV file. Refuses, with file:line: a column that isn't there, cells empty or not finite, times that don't
    rise, fewer than 3 samples, more than ETHD_MOVEMENT_MOST, positions beyond 1 km, a hand faster than
-   ETHD_MOVEMENT_FASTEST. Refuses also a movement away from the wall: its highest speed to -x is below a fifth of that to
-   +x (0.37 is the least of 336 recorded reaches and taps). */
+   ETHD_MOVEMENT_FASTEST. Refuses also a movement away from the wall: its top speed to -x is below a fifth of that to +x
+   (0.37 is the least of 336 recorded reaches and taps). */
 ETHD_MUST_CHECK ethd_status ethd__movement_load(const char *path, const ethd__movement_form *form, ethd__movement *out,
                                                 char message[ETHD_MESSAGE_MAX]);
 void ethd__movement_free(ethd__movement *movement);
@@ -46,19 +46,18 @@ void ethd__movement_free(ethd__movement *movement);
 /* Returns the speed toward the wall at sample k, m/s. */
 double ethd__movement_speed(const ethd__movement *movement, size_t k);
 
-/* Where the movement has fallen to a speed. */
+/* The point at which the movement has slowed to a speed. */
 typedef struct ethd__touchdown {
   double t;        /* s of the movement */
   ethd_vec x;      /* m, as recorded */
-  bool never_fast; /* it never was that fast; t is the peak's */
+  bool never_fast; /* it was never that fast; t is the peak's */
 } ethd__touchdown;
 
 void ethd__movement_touchdown(const ethd__movement *movement, double speed, ethd__touchdown *out);
 
-/* Fills out[0..movement->count) with the samples shifted so that the finger's centre is at `centre` at
-   the touchdown, from where it last enters the arm's reach before that to where it leaves it afterwards;
-   returns how many (the path is held there), 0 when the touchdown itself is out of reach. Time starts at
-   0 with the first. */
+/* Fills out[0..movement->count) with the samples shifted so that the finger's centre is at `centre` at the touchdown,
+   from its last entry into the arm's reach before that to its next exit. Returns their number (the path is held at the
+   end), or 0 if the touchdown is out of reach. Time starts at 0 with the first sample. */
 size_t ethd__movement_place(const ethd__movement *movement, const ethd__touchdown *touchdown, ethd_vec centre,
                             const ethd_arm *arm, ethd_path_sample *out);
 
@@ -66,7 +65,7 @@ size_t ethd__movement_place(const ethd__movement *movement, const ethd__touchdow
 ETHD_MUST_CHECK ethd_status ethd__movements_list(const char *path, char ***files, size_t *count,
                                                  char message[ETHD_MESSAGE_MAX]);
 
-/* Lists those of a folder, and refuses what is none. */
+/* Lists the files of a folder, and refuses any other path. */
 ETHD_MUST_CHECK ethd_status ethd__movements_in(const char *folder, char ***files, size_t *count,
                                                char message[ETHD_MESSAGE_MAX]);
 void ethd__movements_free(char **files, size_t count);

@@ -8,21 +8,21 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define WAIT 2.5      /* s in which the arm goes to the resting finger */
+#define WAIT 2.5      /* s for the arm's motion to the resting finger */
 #define AFTER 0.2     /* s from the end of the reach to that of the tap */
 #define LATENCY 0.03  /* s from a reading's instant to its arrival */
 #define NOISE 1e-3    /* m, sd of a reading, each axis */
 #define FAST 1.5      /* m/s: no command is faster */
-#define SHARE 0.93    /* of what the joints allow along n, that commands may use */
+#define SHARE 0.93    /* of the joints' limits along n that commands may use */
 #define LEAST 1.0     /* m/s^2 along n: below, a posture counts as singular */
 #define FARTHEST 0.3  /* m before the wall at which drawn reaches begin */
-#define TRAVEL 10.0   /* s in which the arm must get where it is to stand */
-#define CLOSE 1e-3    /* m: it has got there */
+#define TRAVEL 10.0   /* s within which the arm must reach its target place */
+#define CLOSE 1e-3    /* m: it has reached the place */
 #define HAND_MOST 1.2 /* m/s: fastest drawn reach */
 
 /* ---- what is studied ---- */
 
-/* Goes straight towards `to`; returns how far from it the arm comes to rest. */
+/* Moves straight towards `to`; returns the distance from it at which the arm comes to rest. */
 static double go_to(ethd__arm_motion *m, ethd_vec3 to) {
   const double periods = TRAVEL * m->table->servo.rate;
   double far = INFINITY;
@@ -78,7 +78,7 @@ ethd_status ethd__recorded_load(const char *path, const ethd__movement_form *for
   if (status) return status;
   rise.columns[2] = "z_m";
   status = ethd__movement_load(path, &rise, &out->rise, unsaid);
-  if (!status || status == ETHD_E_UNKNOWN) return ETHD_OK; /* it has no such column */
+  if (!status || status == ETHD_E_UNKNOWN) return ETHD_OK; /* the column is missing */
   ethd__movement_free(&out->path);
   return ethd__say(message, status, "%s", unsaid);
 }
@@ -88,7 +88,7 @@ void ethd__recorded_free(ethd__recorded *recorded) {
   ethd__movement_free(&recorded->rise);
 }
 
-/* Draws a reach of minimum jerk that has `speed` at the wall; false: that would take a faster hand than HAND_MOST. */
+/* Draws a reach of minimum jerk that has `speed` at the wall; false: that needs a faster hand than HAND_MOST. */
 static bool draw(const ethd__reaches *r, double speed, uint64_t k, ethd_path *out) {
   const ethd__sim_key key = {r->seed, k};
   const double before = 0.15 + (FARTHEST - 0.15) * ethd__uniform(key, ETHD__STREAM_START, 0);
@@ -113,7 +113,7 @@ static ethd_path path_of(const ethd__movement *m) {
   return (ethd_path){.samples = m->samples, .sample_count = m->count};
 }
 
-/* Lays a movement so that it has fallen to `speed` where the finger meets the wall. */
+/* Shifts a movement so that it has slowed to `speed` when the finger meets the wall. */
 static bool lay(const ethd__recorded *recorded, double speed, ethd__arm_finger *f) {
   ethd__touchdown at;
   ethd__movement_touchdown(&recorded->path, speed, &at);
@@ -129,7 +129,7 @@ static bool lay(const ethd__recorded *recorded, double speed, ethd__arm_finger *
   return !at.never_fast;
 }
 
-/* Returns whether the hand is so fast. */
+/* Returns whether the hand reaches this speed. */
 static bool put_finger(const ethd__reaches *r, double speed, uint64_t k, ethd__arm_finger *out) {
   const ethd__sim_key key = {r->seed, k};
   *out = ethd__arm_finger_at(ethd_vec3_sub(r->at, ethd_vec3_scale(ETHD_REACH_FINGER, r->n)), r->n);
@@ -202,7 +202,7 @@ static void step(ethd__reach_rig *rig, ethd_space_trace *trace) {
   const ethd_vec3 x = ethd_vec3_of(sense.x);
   const ethd_vec3 near = ethd_vec3_add(x, ethd_vec3_scale(r->wall - ethd_vec3_dot(r->n, x), r->n));
   const ethd_surface wall = {.point = near, .n = r->n, .id = 1, .material = -1};
-  (void)ethd_space_step(rig->space, &sense, &wall, 1, &command, trace); /* a fault stands in the trace */
+  (void)ethd_space_step(rig->space, &sense, &wall, 1, &command, trace); /* a fault is in the trace */
   ethd__arm_sim_write(&rig->sim, &command);
 }
 

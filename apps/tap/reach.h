@@ -1,4 +1,4 @@
-/* Reaches through a flat wall to a plate on a simulated arm that takes velocities, seen by a headset.
+/* Reaches through a flat wall to a plate on a simulated arm with velocity commands; a headset measures the finger.
 
        finger |<-- gap -->| plate          wall         the plate goes before the finger, and is to stand at the
          o                |------------->  |/////  n    wall when the finger comes
@@ -15,33 +15,33 @@
 #include "tap/study.h"
 
 #define ETHD_REACH_FINGER 0.008 /* m, radius of the finger */
-#define ETHD_REACH_EARLY 1e-3   /* m: a plate that is touched farther before the wall is touched early */
+#define ETHD_REACH_EARLY 1e-3   /* m: a touch farther before the wall than this is early */
 
 /* A recorded movement, also its z where it has one: `rise` has z in the place of y. */
 typedef struct ethd__recorded {
   ethd__movement path, rise;
 } ethd__recorded;
 
-/* What taps are made of. */
+/* The conditions of the taps. */
 typedef struct ethd__reaches {
-  ethd__arm_table table; /* with the delay that is studied */
+  ethd__arm_table table; /* with the studied delay */
   ethd_vec3 n;           /* unit vector into the wall */
   double wall;           /* m: n.P of its points P */
   double gap;            /* m, from the finger's front to the plate */
-  double rate, bias;     /* of the headset: Hz; m along n by which it sees the finger too deep */
+  double rate, bias;     /* of the headset: Hz; m along n: its error, > 0 too deep */
   uint64_t seed;
-  const ethd__gain *gains; /* changes of the setup, "transition.effort", "0.7", but for keys that a law lacks */
+  const ethd__gain *gains; /* changes of the setup, "transition.effort", "0.7", except keys that a law lacks */
   size_t gain_count;
   const ethd__recorded *recorded; /* tap k has movement k modulo their number; NULL: drawn reaches */
   size_t recorded_count;
-  /* worked out by ethd__reaches_prepare */
-  ethd_vec3 at;               /* m: where the plate is to stand */
+  /* computed by ethd__reaches_prepare */
+  ethd_vec3 at;               /* m: the plate's target place */
   double speed, acceleration; /* m/s, m/s^2: limits of the commands */
 } ethd__reaches;
 
-/* Turns n into a unit vector and finds where the plate is to stand: in the wall before the posture. Refuses a wall or a
-   way to it that the arm can't go (ETHD_E_UNREACHABLE), and a singular posture there (ETHD_E_RANGE); messages call the
-   table `name`. */
+/* Normalises n and finds the plate's target place: in the wall before the posture. Refuses a wall, or a path to it, out
+   of the arm's reach (ETHD_E_UNREACHABLE), and a singular posture there (ETHD_E_RANGE); messages call the table
+   `name`. */
 ETHD_MUST_CHECK ethd_status ethd__reaches_prepare(ethd__reaches *reaches, const char *name,
                                                   char message[ETHD_MESSAGE_MAX]);
 
@@ -50,7 +50,7 @@ ETHD_MUST_CHECK ethd_status ethd__recorded_load(const char *path, const ethd__mo
                                                 char message[ETHD_MESSAGE_MAX]);
 void ethd__recorded_free(ethd__recorded *recorded);
 
-/* One tick, for a table of it: places along n from the wall, m, speeds along n, m/s. */
+/* One tick of a table: positions along n from the wall, m, speeds along n, m/s. */
 typedef struct ethd__reach_row {
   double t; /* s */
   double plate, commanded, finger;
@@ -63,9 +63,9 @@ typedef struct ethd__reach_rows {
   size_t count, room, touch; /* touch: the row of the touch */
 } ethd__reach_rows;
 
-/* One tap. It is valid if the finger touches the plate at the wall, at the speed asked for and without a fault. */
+/* One tap. It is valid if the finger touches the plate at the wall, at the required speed and without a fault. */
 typedef struct ethd__reach {
-  ethd__reason reason; /* OK, FAULT, TOO_SLOW (a recorded hand never is so fast), NO_CONTACT, EARLY_CONTACT */
+  ethd__reason reason; /* OK, FAULT, TOO_SLOW (a recorded hand is never fast enough), NO_CONTACT, EARLY_CONTACT */
   double felt, speed;  /* of the plate at the first touch: m behind the wall, m/s along n; NaN: no touch */
   ethd_fault fault;    /* the controller's first, which ends the tap */
 } ethd__reach;
@@ -78,14 +78,14 @@ typedef struct ethd__reach_rig {
   ethd__arm_sim sim;
 } ethd__reach_rig;
 
-/* Opens a rig with this transition law. ETHD_E_UNKNOWN: there is no such law; what ethd_space_set
-   and ethd_space_create refuse. */
+/* Opens a rig with this transition law. ETHD_E_UNKNOWN: no such law; the errors of ethd_space_set and
+   ethd_space_create. */
 ETHD_MUST_CHECK ethd_status ethd__reach_open(const ethd__reaches *reaches, const char *law, ethd__reach_rig *out,
                                              char message[ETHD_MESSAGE_MAX]);
 void ethd__reach_close(ethd__reach_rig *rig);
 
-/* Runs tap k, a function of the study, the law, `speed` (m/s, of the finger at the wall) and k alone. rows NULL: they
-   aren't wanted. ETHD_E_MEMORY: no room for them. */
+/* Runs tap k, a function of the study, the law, `speed` (m/s, of the finger at the wall) and k alone. rows NULL: not
+   recorded. ETHD_E_MEMORY: no room for rows. */
 ETHD_MUST_CHECK ethd_status ethd__reach_run(ethd__reach_rig *rig, double speed, uint64_t k, ethd__reach *out,
                                             ethd__reach_rows *rows);
 

@@ -32,7 +32,7 @@ static char *table_path(const char *name) {
   return path;
 }
 
-/* Puts the wall that is asked for, or one AHEAD of the plate at the posture, which it faces. */
+/* Sets the requested wall, or a wall AHEAD of the plate at the posture, facing the plate. */
 static void put_wall(const ethd__tap_options *arg, ethd__reaches *r) {
   const ethd_vec3 given = ethd_vec3_of(arg->wall);
   const double length = ethd_vec3_norm(given);
@@ -44,7 +44,7 @@ static void put_wall(const ethd__tap_options *arg, ethd__reaches *r) {
 
 static const char *const trace_files[] = {"*.csv", NULL};
 
-/* What was read isn't written over. */
+/* Inputs are never overwritten. */
 static void refuse_input(const ethd__tap_options *arg, const char *option, const char *input) {
   char *table = arg->plot ? ethd__picture_table(arg->plot) : NULL;
   ethd__refuse_input("--csv", arg->csv, option, input);
@@ -67,7 +67,7 @@ static void load_recorded(const ethd__tap_options *arg, ethd__recorded **out, si
   free(finger);
 }
 
-/* Refuses what would make the first taps fail, and a key that no law has. */
+/* Refuses causes of failure of the first taps, and a key that no law has. */
 static void try_laws(const ethd__reach_plan *plan) {
   static ethd__reach_rig rig;
   const ethd__reaches *r = &plan->reaches;

@@ -4,7 +4,7 @@
 
 #include "tap/options.h"
 
-/* Runs what the options ask for and returns the exit code; exits 2 on bad input. */
+/* Runs the command of the options and returns the exit code; exits 2 on bad input. */
 int ethd__reach_main(const ethd__tap_options *options);
 
 #endif

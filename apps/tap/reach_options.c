@@ -46,7 +46,7 @@ static void check(const struct argp_state *state, const ethd__tap_options *arg, 
 }
 
 static error_t parse(int key, char *text, struct argp_state *state) {
-  static bool any; /* but for --arm itself */
+  static bool any; /* except --arm itself */
   ethd__tap_options *arg = state->input;
   any |= key >= OPTION_DELAY && key <= OPTION_PLOT;
   switch (key) {

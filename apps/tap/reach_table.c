@@ -118,7 +118,7 @@ static void print_cell(FILE *file, const ethd__reach_cell *cell, int law) {
   fputc('\n', file);
 }
 
-/* Why taps aren't valid, but for those that are early. */
+/* The reasons of invalid taps, except early ones. */
 static void print_reasons(FILE *file, const ethd__reach_cell *cell) {
   size_t count[ETHD_TAP_REASON_COUNT] = {0};
   ethd_fault fault = ETHD_FAULT_NONE;

@@ -13,16 +13,16 @@ typedef struct ethd__reach_cell {
   size_t count;
 } ethd__reach_cell;
 
-/* What of a cell is printed; NaN: there is none. */
+/* The printed figures of a cell; NaN: none. */
 typedef struct ethd__reach_figures {
   size_t valid, early; /* taps */
-  double early_share;  /* of all touches of a hand that was fast enough */
+  double early_share;  /* of all touches of a fast enough hand */
   double felt, felt_sd,
       deepest;           /* m: mean, standard deviation and largest of the plate's place at the touch, over the */
   double speed, fastest; /* valid taps; m/s: mean and largest of its absolute speed there */
 } ethd__reach_figures;
 
-/* What is run: every law at each speed, `taps` times. */
+/* The plan: every law at each speed, `taps` times. */
 typedef struct ethd__reach_plan {
   ethd__reaches reaches;
   const char *const *laws;
@@ -35,8 +35,8 @@ typedef struct ethd__reach_plan {
 ethd__reach_cell *ethd__reach_cells_create(const ethd__reach_plan *plan);
 void ethd__reach_cells_free(ethd__reach_cell *cells);
 
-/* Fills the cells, laws outermost, and returns what ethd__reach_open refuses. Ends early, with ETHD_OK, once ethd__stop is
-   set. */
+/* Fills the cells, laws outermost, and returns the error of ethd__reach_open. Ends early, with ETHD_OK, once ethd__stop
+   is set. */
 ETHD_MUST_CHECK ethd_status ethd__reach_cells_run(const ethd__reach_plan *plan, ethd__reach_cell *cells,
                                                   char message[ETHD_MESSAGE_MAX]);
 

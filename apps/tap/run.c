@@ -109,7 +109,7 @@ static ethd_status trace_cell(const ethd__tap_plan *plan, const char *folder, co
   ethd__result result;
   char name[ETHD_FILE_NAME_MAX];
   const char *words[] = {cell->law, cell->speed->word, NULL};
-  ethd__cell judged = *cell; /* of a ring that stops before the wall hardly a tap is valid by the paper's rule */
+  ethd__cell judged = *cell; /* if the ring stops before the wall, hardly a tap is valid by the paper's rule */
   judged.by_finger = ethd__cell_stops(cell);
   uint64_t number = ethd__cell_typical(&judged);
   ethd__file_name(words, ".csv", name);

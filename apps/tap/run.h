@@ -4,7 +4,7 @@
 
 #include "tap/output.h"
 
-/* What is run: every law at each of the study's speeds, `taps` times. */
+/* The plan: every law at each of the study's speeds, `taps` times. */
 typedef struct ethd__tap_plan {
   const ethd__study *study;
   const char *const *laws;
@@ -16,7 +16,7 @@ typedef struct ethd__tap_plan {
 ethd__cell *ethd__cells_create(const ethd__tap_plan *plan);
 void ethd__cells_free(ethd__cell *cells);
 
-/* Refuses what would make the first taps fail: unknown laws, setups that don't fit, a touch out of reach. */
+/* Refuses causes of failure of the first taps: unknown laws, setups that don't fit, a touch out of reach. */
 ETHD_MUST_CHECK ethd_status ethd__plan_check(const ethd__tap_plan *plan, char message[ETHD_MESSAGE_MAX]);
 
 /* Fills the cells, laws outermost. Ends early, with ETHD_OK, once ethd__stop is set. */

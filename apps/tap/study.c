@@ -29,10 +29,10 @@ bool ethd__speed_parse(const char *word, const ethd_plant *plant, ethd__speed *o
 
 /* ---- where the wall is ---- */
 
-#define AWAY 1e-6 /* m: the least step from a wall that is left */
+#define AWAY 1e-6 /* m: the least step away from a wall */
 
-/* Sphere tracing: a step as long as the clearance never passes through an object. A wall behind x, such as a room's
-   right one where the reach begins, is left first. */
+/* Sphere tracing: a step as long as the clearance never passes through an object. First it moves away from a wall
+   behind x, such as a room's right wall at the beginning of the reach. */
 int ethd__way_to_wall(const ethd_scene *scene, double radius, ethd_vec direction, double outer, ethd_vec *x,
                       ethd_nearest *near) {
   for (int step = 0; step < 10000 && ethd_vec_norm(*x) <= outer; step++) {
@@ -56,10 +56,10 @@ static ethd_status find_wall(ethd__study *study, char *message) {
   study->n = near.n;
   if (steps > 0) return ETHD_OK;
   return ethd__say(message, ETHD_E_GEOMETRY, "the scene %s to the left at y = %g m",
-                   steps ? "has no wall on the ring's way" : "leaves no room for a movement", ETHD_TAP_HEIGHT);
+                   steps ? "has no wall on the ring's path" : "leaves no room for a movement", ETHD_TAP_HEIGHT);
 }
 
-/* Where a finger of this radius touches the wall that the ring meets. */
+/* The point at which a finger of this radius touches the ring's wall. */
 static ethd_vec finger_at_wall(const ethd__study *study, double radius) {
   double back = study->config->setup.ring_radius - radius;
   return ethd_vec_add(study->meet, ethd_vec_scale(back, study->n));
@@ -195,7 +195,7 @@ void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const e
   count_ticks(&stage->rows, out);
 }
 
-/* Their numbers are out of the way of the taps that count. */
+/* Their numbers differ from those of counted taps. */
 #define LEARNING (UINT64_C(1) << 40)
 
 static ethd_status run_tap(ethd__stage *stage, const ethd_sim_tap *tap, const ethd__rule *rule) {

@@ -13,7 +13,7 @@
 #define ETHD_TAP_WORD_MAX 32
 
 typedef struct ethd__speed {
-  char word[ETHD_TAP_WORD_MAX]; /* the word that was given: low, high or a number */
+  char word[ETHD_TAP_WORD_MAX]; /* the given word: low, high or a number */
   double commanded;             /* m/s: of the synthetic hand */
   double centre, band;          /* m/s: valid within centre +- band; a recording touches at centre */
   ethd__touchdown touchdown;    /* of the movement at this speed */
@@ -35,25 +35,25 @@ typedef struct ethd__study {
   ethd__movement movement; /* count 0: the plant's synthetic hand */
   ethd__speed *speeds;
   size_t speed_count;
-  const ethd__gain *gains; /* changes of the configuration; a law that lacks such a parameter is run without it */
+  const ethd__gain *gains; /* changes of the configuration; a law without such a parameter ignores it */
   size_t gain_count;
   double graze, lift; /* as in ethd__rule */
   ethd__validity validity;
-  uint32_t learn; /* taps before each counted one, from which a law that learns does so */
+  uint32_t learn; /* taps before each counted one, for laws that learn */
   bool single;
-  /* worked out by ethd__study_prepare */
+  /* computed by ethd__study_prepare */
   ethd_vec meet; /* m: the ring's centre as it meets the wall */
   ethd_vec n;    /* of the wall there */
 } ethd__study;
 
 #define ETHD_TAP_HEIGHT 0.25 /* m: y of the movement to the left */
 
-/* Finds the wall: the first object that the ring meets on its way to the left at ETHD_TAP_HEIGHT. Then the
+/* Finds the wall: the first object that the ring meets when it moves to the left at ETHD_TAP_HEIGHT. Then the
    touchdowns of a movement. Refuses a scene without one, and a touch out of reach. */
 ETHD_MUST_CHECK ethd_status ethd__study_prepare(ethd__study *study, char message[ETHD_MESSAGE_MAX]);
 
-/* Moves x until a disc of this radius there meets an object. Returns in how many steps; -1: none within `outer` of the
-   origin. */
+/* Moves x until a disc of this radius there meets an object. Returns the number of steps; -1: none within `outer` of
+   the origin. */
 int ethd__way_to_wall(const ethd_scene *scene, double radius, ethd_vec direction, double outer, ethd_vec *x,
                       ethd_nearest *near);
 
@@ -65,8 +65,8 @@ typedef struct ethd__stage {
   ethd_sim *sim;
   ethd_control *control;
   ethd__tap_rows rows;         /* of the last tap */
-  double learned[ETHD_MEMORY]; /* by the law, as the last tap began */
-  double heat[2];              /* of the motors as it began, see ethd_control_heat */
+  double learned[ETHD_MEMORY]; /* by the law, at the beginning of the last tap */
+  double heat[2];              /* of the motors at its beginning, see ethd_control_heat */
   ethd_path_sample *samples;
 } ethd__stage;
 
@@ -86,7 +86,7 @@ ETHD_MUST_CHECK ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__spe
 /* Returns the rule of validity for taps of this finger on this stage at this speed. */
 ethd__rule ethd__stage_rule(const ethd__stage *stage, const ethd__speed *speed, double finger_radius);
 
-/* Returns the view that turns their ticks into tables. */
+/* Returns the data that convert their ticks to tables. */
 ethd__view ethd__stage_view(const ethd__stage *stage, const ethd__speed *speed, double finger_radius);
 
 typedef struct ethd__result {
@@ -97,7 +97,7 @@ typedef struct ethd__result {
   ethd__law_fault law_fault;     /* the first of a tap that ethd__stage_run made */
 } ethd__result;
 
-/* Judges the ticks in stage->rows, which are this tap's. */
+/* Evaluates this tap's ticks, in stage->rows. */
 void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const ethd_sim_tap *tap, ethd__result *out);
 
 ETHD_MUST_CHECK ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64_t tap,

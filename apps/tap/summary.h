@@ -15,7 +15,7 @@ typedef struct ethd__cell {
 /* A figure of ethd__metrics, over the valid taps that have it. */
 typedef struct ethd__figure {
   size_t n;
-  double mean, sd; /* NaN of none, of fewer than two */
+  double mean, sd; /* NaN with none, with fewer than two */
 } ethd__figure;
 
 #define ETHD_TAP_FIELD(name) offsetof(ethd__metrics, name)

@@ -68,8 +68,8 @@ static void print_cells(FILE *file, const ethd__cell *cells, size_t count, bool 
   }
 }
 
-/* By the paper's rule, which judges the ring as it meets the wall; where a law stops it before, all laws once more by
-   the finger's. */
+/* By the paper's rule, which judges the ring as it meets the wall; if a law stops it before, all laws once more by the
+   finger's. */
 static void print_laws(FILE *file, const ethd__study *study, const ethd__cell *cells, size_t count) {
   bool stops = study->validity == ETHD_TAP_BY_FINGER;
   if (!stops) print_cells(file, cells, count, false);
@@ -143,7 +143,7 @@ static void print_means(FILE *file, const ethd__cell *cells, size_t count) {
         file);
 }
 
-/* Figures of the paper that the table above hasn't, without a verdict. */
+/* Figures of the paper that the table above lacks, without a verdict. */
 static void print_beside(FILE *file, const ethd__cell *cells, size_t count) {
   const ethd__cell *low = find_cell(cells, count, "offset", "low");
   const ethd__cell *smooth = find_cell(cells, count, "smooth", "high");
@@ -188,7 +188,7 @@ static void print_heading(FILE *file, const ethd__study *study, const ethd__head
   fputs(" Means (standard deviations) over the valid taps.\n\n", file);
 }
 
-/* The first fault under each transition law; which law it came by, where it is a law's. */
+/* The first fault under each transition law, and the law that caused it, if any. */
 static void print_faults(FILE *file, const ethd__study *study, const ethd__cell *cells, size_t count) {
   char text[ETHD_MESSAGE_MAX];
   for (size_t law = 0; law < count; law += study->speed_count) {

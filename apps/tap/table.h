@@ -13,7 +13,7 @@ typedef struct ethd__heading {
   bool scaled;
 } ethd__heading;
 
-/* Prints the cells; with the synthetic hand also Table 1, what is fitted and what isn't reproduced. */
+/* Prints the cells; with the synthetic hand also Table 1, the fitted figures and those that aren't reproduced. */
 void ethd__table_print(FILE *file, const ethd__study *study, const ethd__heading *heading, const ethd__cell *cells,
                        size_t count);
 

@@ -61,7 +61,7 @@ ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage, char
   return said(ticks, status, message);
 }
 
-/* Where it isn't nothing. */
+/* If it isn't empty. */
 static ethd_status tell_learned(ethd_recording *recording, const double learned[ETHD_MEMORY]) {
   char text[32 * ETHD_MEMORY] = "";
   bool any = false;
@@ -83,7 +83,7 @@ ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *words, const ethd__s
   return said(ticks, status, message);
 }
 
-/* Without all of the truth the recording has no end either. */
+/* If the truth is incomplete, the recording stays unfinished too. */
 ethd_status ethd__ticks_close(ethd__ticks *ticks, char message[ETHD_MESSAGE_MAX]) {
   errno = 0;
   if (ethd_npy_close(ticks->truth)) (void)!ethd__recording_fail(ticks->recording, TRUTH, errno ? errno : EIO);

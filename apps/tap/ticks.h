@@ -1,7 +1,7 @@
 /* Ticks of taps on disk: a recording, and the truth beside it.
 
    The folder holds, beside a recording's own files, truth.npy: row i belongs to row i of tick.npy.
-   events.csv tells where a tap starts. All [main]. */
+   events.csv has each tap's start. All [main]. */
 #ifndef ETHD__APPS_TAP_TICKS_H
 #define ETHD__APPS_TAP_TICKS_H
 
@@ -20,11 +20,11 @@ typedef struct ethd__ticks {
 ETHD_MUST_CHECK ethd_status ethd__ticks_open(const char *folder, const ethd_config *config, bool replace,
                                              ethd__ticks *out, char message[ETHD_MESSAGE_MAX]);
 
-/* Says that taps run on this stage from here on, under its law. */
+/* Announces the stage and law of the next taps. */
 ETHD_MUST_CHECK ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage,
                                               char message[ETHD_MESSAGE_MAX]);
 
-/* Writes the whole of the stage's last tap; `words` are for people. */
+/* Writes all of the stage's last tap; `words` are for people. */
 ETHD_MUST_CHECK ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *words, const ethd__stage *stage,
                                             char message[ETHD_MESSAGE_MAX]);
 

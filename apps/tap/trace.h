@@ -4,7 +4,7 @@
 
 #include "tap/metrics.h"
 
-/* Data that turn ticks into depths. */
+/* Data for the conversion of ticks to depths. */
 typedef struct ethd__view {
   ethd__rule rule;
   double wall;                       /* m: of the wall along n */

@@ -50,6 +50,6 @@ bool ethd__encoder_doubt(const ethd__encoder_def *d, const ethd_setup *setup, in
       "inertia of joint %d is %.3g kg m^2, but arm.mass_%c = %.3g kg on a link of %g m makes %.3g: %s; set inertia",
       joint + 1, d->inertia, 'x' + joint, mass, link, known,
       d->inertia < known ? "a reversed encoder isn't noticed"
-                         : "a hand that pushes may be taken for a reversed encoder");
+                         : "a pushing hand may be mistaken for a reversed encoder");
   return true;
 }

@@ -29,7 +29,7 @@ typedef struct counter {
   ethd__encoder encoder[2];
   double torque[2]; /* of the last command */
   uint64_t marks[2];
-  int32_t lost; /* a jump was grave, so the angle is no longer known */
+  int32_t lost; /* after a grave jump: the angle is no longer known */
 
   /* any thread */
   bool clear; /* wrong marks are acknowledged */
@@ -142,7 +142,7 @@ static void counter_close(void *device) {
   free(c);
 }
 
-#define WIDTH 32 /* bits, until the kernel is asked for a count's ceiling */
+#define WIDTH 32 /* bits, until the kernel's ceiling is read */
 
 static ethd_status counter_prepare(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
   counter *c = *out = calloc(1, sizeof *c);
@@ -186,7 +186,7 @@ static ethd_status home(counter *c) {
 
 static bool is_misindexed(const counter *c) { return c->encoder[0].misindexed || c->encoder[1].misindexed; }
 
-/* After a grave jump the angles are found anew: by homing, or from the counts as they are. */
+/* After a grave jump the angles are found again: by homing, or from the present counts. */
 static ethd_status counter_start(void *device) {
   counter *c = device;
   ethd_status status = ETHD_OK;
@@ -205,7 +205,7 @@ static ethd_status counter_start(void *device) {
   return status;
 }
 
-/* Says that the present counts are these angles. */
+/* Assigns these angles to the present counts. */
 static ethd_status counter_home(void *device, const double q[2]) {
   counter *c = device;
   if (!q) return ETHD_OK; /* homing by index marks is done by start */

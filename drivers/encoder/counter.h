@@ -1,18 +1,18 @@
 /* Two encoders behind the kernel's counters (linux/counter.h), one for each joint.
 
      /sys/bus/counter/devices/counterN/countM/count      the count, read in each call of service
-                                              /ceiling   where it begins anew; set where it is 0
+                                              /ceiling   where it wraps to 0; set if it is 0
                                               /function  "quadrature x4": set, and read back
                                               /enable    1: set, and read back
-     /dev/counterN   events with the kernel's instants: index marks; each edge, where speeds come from those
+     /dev/counterN   events with the kernel's time stamps: index marks; each edge, if speeds come from edges
 
        [device]
-       driver = servo, counter          the later driver's angles are the ones that count
+       driver = servo, counter          the later driver's angles are used
        counter.device = /dev/counter0
        counter.ratio = 12
 
-   This driver was never run on hardware: the kernels at hand had no counter. It was tested with a stand-in
-   for the system calls below. A kernel's counter is slow or quick; here a thread reads it, never the loop. */
+   This driver was never run on hardware: no available kernel had a counter. It was tested with a replacement of the
+   system calls below. A thread reads the kernel's counter, which may be slow; the loop never does. */
 #ifndef ETHD__ENCODER_COUNTER_H
 #define ETHD__ENCODER_COUNTER_H
 
@@ -24,7 +24,7 @@
 
 #define ETHD_COUNTER_TEXT_MAX 96 /* bytes of a path or a function's name, the closing 0 included */
 
-/* The system calls, as the kernel has them: failures are -1 and errno. */
+/* The system calls with the kernel's conventions: failures are -1 and errno. */
 typedef struct ethd__counter_calls {
   int (*open)(const char *path, int flags);
   int (*close)(int fd);
@@ -36,7 +36,7 @@ typedef struct ethd__counter_calls {
 } ethd__counter_calls;
 
 extern const ethd__counter_calls ethd__counter_kernel;
-extern const ethd__counter_calls *ethd__counter_calls_now; /* used when a device is opened; tests set their own */
+extern const ethd__counter_calls *ethd__counter_calls_now; /* used at the opening of a device; tests set their own */
 
 enum {
   ETHD__COUNTER_COUNTS_PER_TURN,
@@ -72,9 +72,9 @@ typedef struct ethd__counter_settings {
 ETHD_MUST_CHECK ethd_status ethd__counter_settings_read(const ethd_device_def *def, ethd__counter_settings *out,
                                                         char message[ETHD_MESSAGE_MAX]);
 
-/* One count of a counter of the kernel. */
+/* One count of a kernel's counter. */
 typedef struct ethd__kernel_count {
-  int device, count; /* descriptors; the device may be another count's too */
+  int device, count; /* descriptors; two counts may share a device */
   bool shared;
   uint64_t ceiling;
 } ethd__kernel_count;
@@ -89,7 +89,7 @@ void ethd__kernel_count_close(const ethd__counter_calls *calls, ethd__kernel_cou
 /* Reads the count; -1: it can't be read. */
 int ethd__kernel_count_read(const ethd__counter_calls *calls, const ethd__kernel_count *count, uint64_t *raw);
 
-/* Asks the device of joint j for its events. A device that both joints share is asked for both at once. */
+/* Requests the events of joint j's device. If both joints share a device, one request serves both. */
 ETHD_MUST_CHECK ethd_status ethd__kernel_count_watch(const ethd__counter_calls *calls,
                                                      const ethd__counter_settings *settings, int j,
                                                      const ethd__kernel_count *counts, char message[ETHD_MESSAGE_MAX]);

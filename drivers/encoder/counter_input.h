@@ -1,4 +1,4 @@
-/* What the kernel's counters say about two joints, gathered by the I/O thread: events as they come, and present counts.
+/* The kernel's counters of two joints, read by the I/O thread: events in their order, and present counts.
 
      index event   -> index, marks      edge event -> edge_ns, raw      count's attribute -> raw      */
 #ifndef ETHD__ENCODER_COUNTER_INPUT_H
@@ -6,7 +6,7 @@
 
 #include "encoder/counter.h"
 
-/* What is known at an instant. */
+/* The counters' state at an instant. */
 typedef struct ethd__counter_snapshot {
   int64_t time_ns, edge_ns[2];         /* edge: when the count last changed; 0: not known yet */
   uint64_t raw[2], index[2], marks[2]; /* index: the count at the last mark; marks: their number so far */
@@ -17,7 +17,7 @@ typedef struct ethd__counter_input {
   const ethd__counter_settings *settings;
   ethd__kernel_count counts[2];
   ethd__counter_snapshot latest;
-  uint64_t events, bad_events, failures; /* their numbers so far, which other threads may read */
+  uint64_t events, bad_events, failures; /* numbers so far; other threads may read them */
 } ethd__counter_input;
 
 /* Opens and watches both joints' counts; `settings` must outlive *out. The caller closes it, also after a failure.

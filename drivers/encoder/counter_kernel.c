@@ -65,8 +65,8 @@ static int put(const ethd__counter_calls *calls, const char *path, const char *t
   return n < 0 ? -1 : 0;
 }
 
-/* The setting is read back, because a kernel may accept one that it doesn't take. stm32-timer-cnt can't say (EINVAL)
-   what it was before the first one. */
+/* The setting is read back, because a kernel may accept one without applying it. stm32-timer-cnt can't report
+   (EINVAL) the setting before the first one. */
 static ethd_status set_function(const ethd__counter_calls *calls, const ethd__counter_settings *s, int j,
                                 char *message) {
   char path[160], now[ETHD_COUNTER_TEXT_MAX];
@@ -81,7 +81,7 @@ static ethd_status set_function(const ethd__counter_calls *calls, const ethd__co
   return ETHD_OK;
 }
 
-/* Most counters are off until they are enabled, whatever their function; those without the attribute always count. */
+/* With any function most counters are off until they are enabled; those without the attribute always count. */
 static ethd_status enable(const ethd__counter_calls *calls, const ethd__counter_settings *s, int j, char *message) {
   char path[160], now[ETHD_COUNTER_TEXT_MAX];
   name_attribute(s, j, "enable", path, sizeof path);
@@ -161,7 +161,7 @@ ethd_status ethd__kernel_count_open(const ethd__counter_calls *calls, const ethd
   ethd_status status = open_files(calls, s, j, other, out, message);
   if (!status) status = set_function(calls, s, j, message);
   if (!status) status = find_ceiling(calls, s, j, &out->ceiling, message);
-  if (!status) status = enable(calls, s, j, message); /* some take no ceiling while they count */
+  if (!status) status = enable(calls, s, j, message); /* some refuse a ceiling while they count */
   if (!status && ethd__kernel_count_read(calls, out, &raw))
     status = ethd__say(message, ETHD_E_DEVICE, "%s: count %d can't be read", s->device[j], s->count[j]);
   if (status) ethd__kernel_count_close(calls, out);

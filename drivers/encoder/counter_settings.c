@@ -5,8 +5,8 @@
 
 const ethd_param ethd__counter_params[ETHD__COUNTER_PARAMS] = {
     [ETHD__COUNTER_COUNTS_PER_TURN] = {"counts_per_turn", ETHD_WHOLE, 1, 0x1p32, 4000,
-                                       "counts in a turn of the encoder's shaft"},
-    [ETHD__COUNTER_RATIO] = {"ratio", "1", 1e-3, 1e4, 1, "turns of the encoder's shaft in a turn of the joint"},
+                                       "counts per turn of the encoder's shaft"},
+    [ETHD__COUNTER_RATIO] = {"ratio", "1", 1e-3, 1e4, 1, "turns of the encoder's shaft per turn of the joint"},
     [ETHD__COUNTER_SIGN1] = {"sign1", "1|-1", 0, 1, 0, "-1: joint 1's counts rise while its angle falls"},
     [ETHD__COUNTER_SIGN2] = {"sign2", "1|-1", 0, 1, 0, "-1: joint 2's counts rise while its angle falls"},
     [ETHD__COUNTER_OFFSET1] = {"offset1", "rad", -10, 10, 0, "joint 1's angle at count 0, or at the home mark"},

@@ -21,7 +21,7 @@ static int64_t shorter(uint64_t a, uint64_t b, uint64_t ceiling) {
   return up < down ? (int64_t)up : (int64_t)(0 - down);
 }
 
-/* Adds modulo 2^64, because the position of a 64-bit counter may wrap round too. */
+/* Adds modulo 2^64, because the position of a 64-bit counter may wrap too. */
 static int64_t sum(int64_t a, int64_t b) { return (int64_t)((uint64_t)a + (uint64_t)b); }
 
 static double angle_per_count(const ethd__encoder_def *def) {
@@ -32,7 +32,7 @@ static int64_t away(int64_t d) { return d < 0 ? -d : d; }
 
 /* ---- index marks ---- */
 
-/* Returns by how much the distance of two marks differs from whole turns. */
+/* Returns the difference of two marks' distance from whole turns. */
 static int64_t rest(int64_t distance, int64_t turn) {
   int64_t r = distance % turn;
   if (2 * r >= turn) r -= turn;

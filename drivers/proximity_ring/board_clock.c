@@ -8,7 +8,7 @@
 #define EARLY_MAX 0.005  /* s below a settled envelope: a frame that comes earlier shows a jump of the clock */
 #define SETTLED 4        /* blocks after which the envelope is settled */
 
-/* ---- does a frame follow another? ---- */
+/* ---- order of frames ---- */
 
 /* Returns whether the times of two frames fit their sequence. While board 0 is late, t_us goes on and seq doesn't; the
    frame whose flag says so may itself be lost. */

@@ -1,4 +1,4 @@
-/* Finds the board's clock in host time by when its frames arrive.
+/* Finds the board's clock in host time from the arrival times of its frames.
 
      arrival - board time
        |   o        o                  Every arrival is late by what lies between: at least `delay`, often
@@ -6,13 +6,13 @@
        |  o__________o_________o       envelope of the arrivals, `delay` below it.
        +----------------------------> board time
 
-   The envelope is the line under all points that is nearest to them together: the edge of their lower hull at their
-   mean. A point is the lowest of 16 frames, and the last 128 such blocks (7 s) count. The line is worked out anew with
+   The envelope is the line under all points with the least sum of distances: the edge of their lower hull at their
+   mean. A point is the lowest of 16 frames, and the last 128 such blocks (7 s) count. The line is computed again with
    each block, and a point under it lowers it at once. Its slope, the drift, is used after 0.3 s, and kept over a jump,
    because a rebooted board still has its quartz.
 
    A frame's time must fit its sequence. If it doesn't, the clock jumped, or the frame is corrupt and has passed the
-   CRC. The next frame decides, since it fits either the doubtful frame or the one before it. All [rt]. */
+   CRC. The next frame decides: it fits either the doubtful frame or the frame before it. All [rt]. */
 #ifndef ETHD__PROXIMITY_RING_BOARD_CLOCK_H
 #define ETHD__PROXIMITY_RING_BOARD_CLOCK_H
 
@@ -23,7 +23,7 @@ enum { ETHD__CLOCK_BLOCK = 16, ETHD__CLOCK_BLOCKS = 128 };
 typedef enum ethd__clock_verdict {
   ETHD__CLOCK_GOOD = 0,
   ETHD__CLOCK_DOUBTFUL, /* the frame's time contradicts its sequence: don't use it */
-  ETHD__CLOCK_JUMPED,   /* the board was reset, or its clock jumped: aligned anew from this frame on */
+  ETHD__CLOCK_JUMPED,   /* the board was reset, or its clock jumped: aligned again from this frame on */
   ETHD__CLOCK_RETURNED  /* the doubtful frame before this one was corrupt; this one is good */
 } ethd__clock_verdict;
 
@@ -31,7 +31,7 @@ typedef struct ethd__clock_point {
   double x, y; /* board time; arrival - board time. s, from the base on */
 } ethd__clock_point;
 
-/* A clock that begins is zero except for `delay`. */
+/* Initially zero except for `delay`. */
 typedef struct ethd__board_clock {
   double delay; /* s, from a frame's t_us to its earliest arrival */
 
@@ -54,7 +54,7 @@ typedef struct ethd__board_clock {
 ethd__clock_verdict ethd__board_clock_step(ethd__board_clock *clock, const ethd__ring_frame *frame, int64_t arrival_ns,
                                            int64_t *t_ns) ETHD_RT;
 
-/* Begins anew with the next frame, because the port was opened anew; the drift stays. */
+/* Starts again with the next frame, because the port was reopened; the drift stays. */
 void ethd__board_clock_restart(ethd__board_clock *clock) ETHD_RT;
 
 #endif

@@ -1,4 +1,4 @@
-/* Turns a sensor's counts into a distance.
+/* Converts a sensor's counts to a distance.
 
      counts                              light that comes back falls with the distance, on a floor that is
        |*                                there without a finger (dark: stray light, the ring itself):
@@ -9,7 +9,7 @@
        +---------------------------- d   or a table of (counts - dark, d), its points joined by
                                            straight lines in 1/sqrt(counts - dark)
 
-   Levels, each with more numbers of its own than the one before:
+   Levels, each with more numbers per sensor than the level before:
      none     the law of a typical sensor, nothing measured but dark
      common   one law, fitted to all sensors together
      gain     the common law with a and d0 of each sensor: a gain and an offset
@@ -24,7 +24,7 @@
 
 enum { ETHD__POINTS_MAX = 24, ETHD__SERIAL_MAX = 48 };
 
-#define ETHD__DISTANCE_MAX 0.1 /* m: anything farther counts as nothing */
+#define ETHD__DISTANCE_MAX 0.1 /* m: a farther object counts as none */
 
 typedef enum ethd__level {
   ETHD__LEVEL_NONE = 0,
@@ -69,7 +69,7 @@ double ethd__sensor_counts(const ethd__sensor *sensor, double distance) ETHD_RT;
 /* ---- files ---- */
 
 /* INI: [calibration] level, date, serial, residual; [law] a, p, d0; [sensor K] serial, dark, residual, a, p, d0
-   or point0, point1, ... = COUNTS_ABOVE_DARK METRES. Which keys a sensor may have is said by the level. All [main]. */
+   or point0, point1, ... = COUNTS_ABOVE_DARK METRES. The level decides which keys a sensor may have. All [main]. */
 ETHD_MUST_CHECK ethd_status ethd__calibration_parse(const char *text, size_t length, const char *name,
                                                     ethd__calibration *out, char message[ETHD_MESSAGE_MAX]);
 ETHD_MUST_CHECK ethd_status ethd__calibration_load(const char *path, ethd__calibration *out,

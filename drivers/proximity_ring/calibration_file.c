@@ -148,7 +148,7 @@ static ethd_status check_sections(calibration_source *r, const ethd_ini *ini) {
   return ETHD_OK;
 }
 
-/* The keys that a level promises must be there. */
+/* A level's keys must be present. */
 static ethd_status check_whole(const calibration_source *r) {
   for (int i = 0; i < ETHD_RAYS && r->out->level >= ETHD__LEVEL_GAIN; i++) {
     if (!(r->listed >> i & 1))

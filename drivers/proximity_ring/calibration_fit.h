@@ -4,8 +4,8 @@
 
 #include "proximity_ring/calibration.h"
 
-/* The mean counts of many frames, and the distances that follow from the rod's position; NaN where a ray meets
-   nothing. */
+/* The mean counts of many frames, and the distances that follow from the rod's position; NaN if a ray meets no
+   object. */
 typedef struct ethd__place_reading {
   double counts[ETHD_RAYS]; /* 0: missing; at the ceiling: left out */
   double distance[ETHD_RAYS];

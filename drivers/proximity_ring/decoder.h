@@ -1,7 +1,7 @@
-/* Turns bytes from the wire into frames, and checks COBS, length, type, CRC and sequence.
+/* Decodes bytes from the wire into frames, and checks COBS, length, type, CRC and sequence.
 
-   A frame ends with a zero and holds none, so the decoder is in step again at the next zero, whatever came before; it
-   may start anywhere. Bytes come in pieces of any size; nothing is allocated. All [any, rt-safe]. */
+   A frame ends with a zero and contains no other, so the decoder synchronises at the next zero after any bytes; it may
+   start anywhere. Bytes come in pieces of any size; nothing is allocated. All [any, rt-safe]. */
 #ifndef ETHD__PROXIMITY_RING_DECODER_H
 #define ETHD__PROXIMITY_RING_DECODER_H
 
@@ -16,32 +16,31 @@ typedef struct ethd__ring_frame {
   uint16_t seq;
   uint32_t t_us;
   uint16_t counts[ETHD__FRAME_SENSORS];
-  uint32_t lost; /* frames that the sequence misses before this one, corrupt ones among them */
+  uint32_t lost; /* frames missing in the sequence before this one, corrupt ones included */
 } ethd__ring_frame;
 
 typedef struct ethd__decoder_counters {
-  uint64_t frames; /* good ones */
-  uint64_t
-      corrupt;   /* pieces between zeros that are no frame, each as soon as it is known; not the first since a reset */
-  uint64_t lost; /* frames missing in the sequence; a corrupt one is among them */
-  uint64_t repeated; /* frames with the same sequence as the last one; they are handed on all the same */
+  uint64_t frames;   /* good ones */
+  uint64_t corrupt;  /* pieces between zeros that are no frame, counted once recognised; not the first since a reset */
+  uint64_t lost;     /* frames missing in the sequence, corrupt ones included */
+  uint64_t repeated; /* frames with the same sequence as the last one; they are delivered nevertheless */
 } ethd__decoder_counters;
 
-/* A decoder that begins is all zero. */
+/* Initially all zero. */
 typedef struct ethd__decoder {
   ethd__decoder_counters counters;
-  uint32_t held; /* bytes of a piece that hasn't ended; over ETHD__FRAME_WIRE: too long for a frame */
+  uint32_t held; /* bytes of an unfinished piece; over ETHD__FRAME_WIRE: too long for a frame */
   uint16_t seq;  /* of the last frame */
   bool started;  /* a frame has come, so `seq` is valid */
   bool in_step;  /* a zero has come */
   uint8_t piece[ETHD__FRAME_WIRE];
 } ethd__decoder;
 
-/* Takes the next frame from the bytes from *at to `end`, and moves *at behind it. False: there is no frame, and
+/* Decodes the next frame from the bytes from *at to `end`, and moves *at behind it. False: there is no frame, and
    *at == end. */
 bool ethd__decoder_next(ethd__decoder *decoder, const uint8_t **at, const uint8_t *end, ethd__ring_frame *out) ETHD_RT;
 
-/* Forgets a piece that has begun, and the sequence, because the port was opened anew; the counters stay. */
+/* Drops an unfinished piece and the sequence, because the port was reopened; the counters stay. */
 void ethd__decoder_restart(ethd__decoder *decoder) ETHD_RT;
 
 /* Returns CRC-16/MCRF4XX of the bytes; it is 0 for a frame followed by its CRC. */

@@ -17,11 +17,11 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define WAIT_MS 20                             /* for which one call of service waits for bytes */
+#define WAIT_MS 20                             /* longest wait of one call of service for bytes */
 #define ROOM 4096                              /* bytes of one read */
 #define GAP_NS (1500000000 / ETHD__FRAME_RATE) /* without a frame means that at least one is lost */
 
-/* What the I/O thread hands over. */
+/* The I/O thread's data for the control thread. */
 typedef struct sample {
   ethd__ring_reading reading;
   ethd__receiver_counts counts;

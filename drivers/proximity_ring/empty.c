@@ -23,7 +23,7 @@ static ethd_status check_sensor(const ethd__empty *e, int k, double ring_radius,
   if (mean > allowed)
     return ethd__say(
         message, ETHD_E_DEVICE,
-        "sensor %d counts %.0f, at most %.0f are allowed in an empty ring: take out what is in it, or clean it", k,
+        "sensor %d counts %.0f, at most %.0f are allowed in an empty ring: remove the object, or clean the ring", k,
         mean, allowed);
   s->dark = mean;
   return ETHD_OK;

@@ -4,17 +4,17 @@
              | type | flags | seq   | t_us    | counts[0] .. counts[15] | crc  |     little endian
                u8     u8      u16     u32       16 x u16                  u16
 
-   seq counts frames, modulo 65536, and starts at 0 after a reset of board 0. t_us is the instant at which the
-   sampling began, in board 0's own clock, modulo 2^32; it starts near 0 too. counts[k] belongs to the sensor
-   of ray k, at the angle 2 pi k / 16 round the ring. crc is CRC-16/MCRF4XX (polynomial 0x1021 reflected =
-   0x8408, start 0xFFFF, no final inversion; of "123456789": 0x6F91) of the 40 bytes before it. On the wire the
-   42 bytes are COBS-coded (43 bytes, no zero among them) and ended by a zero: 44. After a reset a zero of its own
-   comes first, so that half a frame from before doesn't cost the first one.
+   seq counts frames, modulo 65536, and starts at 0 after a reset of board 0. t_us is the beginning of the sampling, in
+   board 0's own clock, modulo 2^32; it starts near 0 too. counts[k] belongs to the sensor of ray k, at the angle 2 pi k
+   / 16 round the ring. crc is CRC-16/MCRF4XX (polynomial 0x1021 reflected = 0x8408, start 0xFFFF, no final inversion;
+   of "123456789": 0x6F91) of the 40 bytes before it. On the wire the 42 bytes are COBS-coded (43 bytes, no zero among
+   them) and ended by a zero: 44. After a reset a zero of its own comes first, so that half a frame from before doesn't
+   cost the first one.
 
    Board b has the sensors 4 b .. 4 b + 3. They measure one after another, so that only four of the 16 shine at
    a time: sensor k begins ETHD__FRAME_START_US + ETHD__FRAME_SLOT(k) * ETHD__FRAME_SLOT_US after t_us and takes some
    170 us. Boards 2 and 3 begin in the middle of their four, so that no sensor shines while the one that faces it
-   measures: across an empty ring that light would be part of the dark, and a finger between them would take it away.
+   measures: across an empty ring that light would be part of the dark, and a finger between them would block it.
 
    The firmware and the host both include this file: plain C, stdint alone. */
 #ifndef ETHD__PROXIMITY_RING_FRAME_H

@@ -5,7 +5,7 @@
 
 #define UNUSED_FLAGS 0x80
 #define ALL ((1u << ETHD_RAYS) - 1)
-#define GONE_US 20000 /* us after which a distance of before says nothing any more */
+#define GONE_US 20000 /* us after which an earlier distance is no longer used */
 #define PRESENT 6     /* rays that must meet something, so that a finger's shape can be judged */
 
 ethd_status ethd__plausible_prepare(double ring_radius, double finger_radius, double gate, double speed, double slack,

@@ -1,15 +1,15 @@
-/* Judges whether a frame with a good CRC can be true, since a CRC of 16 bits lets one of 65 536 damaged frames pass.
+/* Checks whether a frame with a good CRC is plausible: a CRC of 16 bits lets one of 65 536 damaged frames pass.
 
      flags     some bits are always 0, and the counts confirm others
      slew      a distance changes by at most `slack` plus `speed` times the time since the last frame
      geometry  the rays lie within `gate` of a circle of the finger's radius
 
-   A few rays that fail are left out; if more than SUSPECTS_MAX fail, the frame is bad. After three bad frames in a row
-   the next one is believed, because something was put into the ring.
+   A few failing rays are left out; if more than SUSPECTS_MAX fail, the frame is bad. After three bad frames in a row
+   the next one is accepted, because something was put into the ring.
 
-   A sensor is out of use once it has failed in five frames more than it was good, until it has been good as often. It
-   fails if it is missing, saturated where no finger is, under half its dark, has a suspect ray, or is stuck, with the
-   same count while half of the others change. All [rt]. */
+   A sensor is out of use once its failed frames exceed its good frames by five, until it has been good as often. It
+   fails if it is missing, saturated where no finger is, under half its dark, has a suspect ray, or is stuck: its count
+   stays the same while half of the others change. All [rt]. */
 #ifndef ETHD__PROXIMITY_RING_PLAUSIBLE_H
 #define ETHD__PROXIMITY_RING_PLAUSIBLE_H
 
@@ -18,7 +18,7 @@
 
 enum { ETHD__SUSPECTS_MAX = 3, ETHD__BAD_IN_A_ROW = 3, ETHD__FAILING = 5 };
 
-/* At first all zero but the first part, which ethd__plausible_prepare makes. */
+/* Initially all zero but the first part, which ethd__plausible_prepare fills. */
 typedef struct ethd__plausible {
   ethd_fit fit;        /* robust, with the gate */
   double speed, slack; /* m/s, m */

@@ -1,8 +1,8 @@
-/* Turns bytes with their arrival into readings with their instant: everything between the port and the sense.
+/* Converts bytes with their arrival time to readings with their instant: all steps between the port and the sense.
 
      bytes -> decoder -> board clock -> calibration, plausibility -> rays, sample_ns
 
-   Faults are counted per row of the fault table, so that a reader that looks now and then misses none. No OS, no heap.
+   Faults are counted per row of the fault table, so that an occasional reader misses none. No OS, no heap.
    All [rt]. */
 #ifndef ETHD__PROXIMITY_RING_RECEIVER_H
 #define ETHD__PROXIMITY_RING_RECEIVER_H
@@ -19,17 +19,17 @@ typedef struct ethd__ring_reading {
   int64_t sample_ns; /* CLOCK_MONOTONIC */
   double rays[ETHD_RAYS];
   uint32_t out;   /* bits: sensors out of use */
-  bool has_drift; /* all sensors together count more or less than they did */
+  bool has_drift; /* all sensors together count more or less than at calibration */
 } ethd__ring_reading;
 
 typedef struct ethd__receiver_counts {
   uint64_t readings;    /* good ones */
-  uint64_t frame_lost;  /* times that frames were lost, corrupt or bad: row 15 */
+  uint64_t frame_lost;  /* number of events of lost, corrupt or bad frames: row 15 */
   uint64_t sensor;      /* frames with a sensor out of use: row 18 */
   uint64_t board_clock; /* jumps and doubts: row 20 */
 } ethd__receiver_counts;
 
-/* At first all zero but calibration, with known darks, clock.delay and the prepared parts of plausible and drift. */
+/* Initially all zero but calibration, with known darks, clock.delay and the prepared parts of plausible and drift. */
 typedef struct ethd__receiver {
   ethd__calibration calibration;
   ethd__decoder decoder;
@@ -37,16 +37,16 @@ typedef struct ethd__receiver {
   ethd__plausible plausible;
   ethd__drift drift;
   ethd__receiver_counts counts;
-  uint64_t corrupt; /* the decoder's count when it was last compared */
+  uint64_t corrupt; /* the decoder's count at the last comparison */
   int64_t last_ns;  /* sample_ns of the last reading; 0: there was none */
 } ethd__receiver;
 
-/* Takes the next reading from the bytes from *at to `end`; the last byte arrived at arrival_ns; moves *at
+/* Decodes the next reading from the bytes from *at to `end`; the last byte arrived at arrival_ns; moves *at
    behind it. False: there is no reading, and *at == end. */
 bool ethd__receiver_next(ethd__receiver *receiver, const uint8_t **at, const uint8_t *end, int64_t arrival_ns,
                          ethd__ring_reading *out) ETHD_RT;
 
-/* Begins anew after the port was opened anew. */
+/* Starts again after the port was reopened. */
 void ethd__receiver_restart(ethd__receiver *receiver) ETHD_RT;
 
 #endif

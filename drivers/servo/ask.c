@@ -45,7 +45,7 @@ static int receive(int fd, uint8_t *bytes, int *got, int length, int64_t until) 
   return 0;
 }
 
-/* On two wires the receiver hears the transmitter: what comes back first must be what was sent. */
+/* On two wires the receiver hears the transmitter: the first received bytes must be the sent ones. */
 static int hear_itself(const ethd__servo_bus *bus, const ethd__servo_frame *f, int64_t until) {
   uint8_t back[ETHD__SERVO_FRAME_MAX];
   int got = 0, failure = receive(bus->fd, back, &got, f->length, until);

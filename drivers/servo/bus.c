@@ -17,7 +17,7 @@ static int64_t nanoseconds(double seconds) { return (int64_t)(1e9 * seconds); }
 
 /* ---- opening ---- */
 
-/* True for what libmodbus can't frame, and for several units, because it doesn't look at an answer's unit over tcp. */
+/* True for frames unknown to libmodbus, and for several units, because it ignores an answer's unit over tcp. */
 static bool is_own(const ethd__servo_map *map) {
   return map->crc == ETHD__SERVO_CRC_HIGH_FIRST || map->local_echo || ethd__servo_several(map);
 }

@@ -13,7 +13,7 @@
 #include "servo/guardian.h"
 #include "servo/homing.h"
 
-#define ETHD__SERVO_OLD_MOST 50000000 /* ns: older feedback ends the torque, however slow the bus is */
+#define ETHD__SERVO_OLD_MOST 50000000 /* ns: older feedback ends the torque, on a slow bus too */
 
 typedef struct ethd__servo_command {
   int64_t stamp_ns;
@@ -22,15 +22,15 @@ typedef struct ethd__servo_command {
 } ethd__servo_command;
 
 typedef struct ethd__servo_device {
-  /* doesn't change after opening */
+  /* constant after opening */
   ethd__servo_map map;
-  char map_name[96];     /* as the settings have it */
-  char wire[300];        /* the remark about what an exchange takes */
+  char map_name[96];     /* from the settings */
+  char wire[300];        /* the remark about the duration of an exchange */
   char unconfirmed[128]; /* the remark about unconfirmed registers; empty: there are none */
   char coarse[160];      /* the remark about a torque whose first count is over the limit; empty: there is none */
   char inertia[2][192];  /* remarks about the inertia of the map's axes; empty: there is none */
   int64_t period_ns, exchange_ns;
-  double speed;               /* m/s: the most that the ring may have */
+  double speed;               /* m/s: the ring's largest allowed speed */
   bool is_virtual;            /* whether the clock is virtual */
   ethd__homing_def homing[2]; /* of the map's axes */
   double home[2];             /* rad: in the jig, at the stop or at the mark; NAN: not given */
@@ -50,16 +50,16 @@ typedef struct ethd__servo_device {
   int64_t grace_ns;
   ethd_histogram age;
 
-  /* needs the lock, which one thread holds: the I/O thread, or [main] in start and stop */
+  /* protected by the lock: the I/O thread, or [main] in start and stop, holds it */
   pthread_mutex_t lock;
   ethd__servo_link link;
-  ethd__guardian guardian;        /* has no process if the drive has a watchdog */
+  ethd__guardian guardian;        /* no process if the drive has a watchdog */
   char guarded[ETHD_MESSAGE_MAX]; /* the remark about it; empty: there is none */
-  const char *unarmed;            /* why the drive isn't enabled here: the guardian would end with us; NULL: it is */
+  const char *unarmed;            /* reason not to enable the drive here: the guardian would end with us; NULL: none */
   ethd__servo_feedback feedback;
   ethd__servo_command command;
   int64_t due_ns;
-  char why[ETHD_MESSAGE_MAX]; /* why the last start failed; empty when it didn't */
+  char why[ETHD_MESSAGE_MAX]; /* reason of the last start's failure; empty: none */
   ethd_histogram trip;
 } ethd__servo_device;
 
@@ -97,8 +97,8 @@ ethd_status ethd__servo_service(void *device, uint32_t unit, int64_t now_ns);
 /* The age in ns at which feedback or a command is too old. [any] */
 int64_t ethd__servo_old(const ethd__servo_device *d) ETHD_RT;
 
-/* Enables: writes zero, sees it back from the drive, and runs [enable]. Disables from any state by [disable]. The
-   link's message says why one of them failed. [main], locked */
+/* Enables: writes zero, reads it back from the drive, and runs [enable]. Disables from any state by [disable]. The
+   link's message gives the reason of a failure. [main], locked */
 ETHD_MUST_CHECK ethd_status ethd__servo_enable(ethd__servo_device *d);
 ETHD_MUST_CHECK ethd_status ethd__servo_disable(ethd__servo_device *d);
 
@@ -108,7 +108,7 @@ int32_t ethd__servo_lost(const ethd__servo_device *d);
 /* Connects for the first time, and identifies the drive. [main] */
 ETHD_MUST_CHECK ethd_status ethd__servo_meet(ethd__servo_device *d);
 
-/* Makes one turn of the link and publishes what it shows; locked. */
+/* Runs one cycle of the link and publishes its result; locked. */
 ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double torque[2]);
 
 #endif

@@ -1,4 +1,4 @@
-/* The servo as a driver: what it says about itself, and its table. */
+/* The servo as a driver: its remarks and limits, and its table. */
 #include <math.h>
 #include <string.h>
 
@@ -74,9 +74,8 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
   return n;
 }
 
-/* Remarks in this order: how long an exchange takes, until the drive itself shows it; how many registers are
-   unconfirmed; a torque that is too coarse; an inertia that is doubtful; the guardian; the line's own delay; then what
-   the map leaves open. */
+/* Remarks in this order: the duration of an exchange, until it is measured; the number of unconfirmed registers; a too
+   coarse torque; a doubtful inertia; the guardian; the line's own delay; then the map's gaps. */
 static const char *remark(const void *device, uint32_t i) {
   const ethd__servo_device *d = device;
   const char *own[8];

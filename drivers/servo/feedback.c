@@ -48,7 +48,7 @@ static double follow(ethd__servo_feedback *f, ethd__servo_axis *a, double raw) {
   int64_t grave = 0;
   const ethd__count count = {.time_ns = f->sample.stamp_ns, .raw = (uint64_t)(int64_t)raw & a->def.ceiling};
   int64_t seen = ethd__encoder_step(&a->def, &a->encoder, &count, f->homing ? (double)NAN : a->torque, &grave);
-  /* two jumps in a row, however far apart a slow bus's samples are, mean that the counter began anew or lost counts */
+  /* two jumps in a row, however far apart a slow bus's samples are, mean that the counter restarted or lost counts */
   bool jumps = (seen & ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP)) != 0;
   if (jumps && a->jumped) grave |= ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP);
   if (grave & ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP)) a->referenced = is_absolute(f, a);
@@ -79,7 +79,7 @@ static void take_axis(ethd__servo_feedback *f, const ethd__servo_link *l, int i)
     f->sample.dq[i] = ethd__servo_joint(r, speed);
 }
 
-/* The value read or written last, in SI at the joint; 0 where the map has no such register. */
+/* The value read or written last, in SI at the joint; 0: the map has no such register. */
 static double value(const ethd__servo_link *l, int which) {
   double raw;
   const ethd__servo_register *r = role(l, which, &raw);
@@ -156,7 +156,7 @@ void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *
   f->sample.number++;
   f->sample.has |= ETHD__SERVO_HAS_SPEED;
   if (other_clock) f->sample.has &= ~ETHD__SERVO_HAS_READING; /* its stamp belongs to the other clock */
-  /* the arm may have gone anywhere while the line was away, and a start may use another clock than what follows */
+  /* the arm may have moved while the line was lost, and a start may use another clock than the run after it */
   for (int i = 0; i < 2 && unseen; i++) ethd__encoder_pause(&f->axes[i].encoder);
   for (int i = 0; i < 2 && f->connects && f->connects != l->counts.connects; i++)
     f->axes[i].referenced &= f->absolute[i]; /* the drive may have lost its power */

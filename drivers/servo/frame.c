@@ -109,7 +109,7 @@ int ethd__servo_frame_whole(const ethd__servo_map *map, const ethd__servo_frame 
 
 static int refusal(uint8_t code) { return code >= 1 && code <= 11 ? MODBUS_ENOBASE + code : EMBBADEXC; }
 
-/* True when the answer has the question's unit, function and number, and as many bytes as were asked for. */
+/* True when the answer has the question's unit, function and number, and the expected number of bytes. */
 static bool is_to(const ethd__servo_map *map, const ethd__servo_frame *q, const uint8_t *a, int length) {
   int h = head(map), read = q->bytes[h + 1] != WRITE;
   if (h && (memcmp(a, q->bytes, 4) != 0 || (int)get(a + 4) != length - h)) return false;

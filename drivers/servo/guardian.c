@@ -1,4 +1,4 @@
-/* What the guardian does when it must. Its process is in guardian_process.c. */
+/* The guardian's actions. Its process is in guardian_process.c. */
 #include "servo/guardian.h"
 
 #include <errno.h>
@@ -24,7 +24,7 @@ int64_t ethd__guardian_bound(const ethd__servo_map *map, int64_t exchange_ns) {
   return 2 * spacing > LEAST ? 2 * spacing : LEAST;
 }
 
-/* ---- what ends it, too ---- */
+/* ---- what can end both processes ---- */
 
 const char *ethd__guardian_ends(void) {
   switch (ethd__container_depth()) {

@@ -64,7 +64,7 @@ static int receive(ethd__guardian *g) {
 
 /* ---- the process ---- */
 
-/* Closes all that is the program's: lines, files, and the terminal, which would otherwise wait for this process. */
+/* Closes the program's descriptors: lines, files, and the terminal, which would otherwise wait for this process. */
 static void let_go_of_the_rest(ethd__guardian *g) {
   int null = open("/dev/null", O_RDWR);
   for (int i = 0; i < 3; i++) dup2(null, i);

@@ -11,7 +11,7 @@
 #define PAUSE 200000 /* ns */
 #define FAILURES 20  /* bad exchanges in a row that end the search */
 
-/* ---- one turn lasts an exchange; on a virtual clock nothing waits ---- */
+/* ---- one cycle lasts an exchange; on a virtual clock nothing waits ---- */
 
 static ethd_status turn(ethd__servo_device *d, const double torque[2]) {
   const struct timespec pause = {.tv_nsec = PAUSE};
@@ -80,7 +80,7 @@ static ethd_status find_all(ethd__servo_device *d) {
   return status ? status : stopped;
 }
 
-/* ---- by what is said ---- */
+/* ---- by the user's statement ---- */
 
 static ethd_status place(ethd__servo_device *d, const double q[2]) {
   const double zero[2] = {0, 0};

@@ -7,7 +7,7 @@
 #include "text/error_text.h"
 
 #define BACK_OFF_MOST 32.0 /* times the map's back_off */
-#define SILENT_LEAST 0.2   /* s without a good answer, after which the line is taken for dead */
+#define SILENT_LEAST 0.2   /* s without a good answer, after which the line counts as dead */
 #define SILENT_ANSWERS 10.0
 #define BUCKET_ADD 10
 #define BUCKET_REFUSED 100
@@ -109,7 +109,7 @@ static void fill(ethd__servo_link *l, const double torque[2]) {
   for (int i = ETHD__SERVO_COUNTER; i <= ETHD__SERVO_COUNTER2; i++) set(l, i, l->counter);
 }
 
-/* True when the drive echoes what was just written. Any other echo belongs to another question. */
+/* True if the drive echoes the value just written. Any other echo belongs to another question. */
 static bool echoes(ethd__servo_link *l) {
   for (uint32_t i = 0; i < l->map->count; i++) {
     const ethd__servo_register *r = &l->map->registers[i];

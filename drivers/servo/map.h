@@ -1,4 +1,4 @@
-/* A register map: which words of a drive on a Modbus mean what, as an INI file.
+/* A register map, an INI file: the meaning of each word of a drive on a Modbus.
 
      [bus]                       how the drive is reached
      transport = rtu             tcp: port = HOST:PORT
@@ -83,23 +83,23 @@ enum {
 };
 
 typedef struct ethd__servo_role {
-  const char *name, *units; /* units: those that its register may have, "A|Nm" */
+  const char *name, *units; /* units: the allowed units of its register, "A|Nm" */
   int direction;
 } ethd__servo_role;
 
 extern const ethd__servo_role ethd__servo_roles[ETHD__SERVO_ROLES];
 
-/* What a [register] says. Masks and addresses are whole numbers. */
+/* A [register]. Masks and addresses are whole numbers. */
 typedef struct ethd__servo_register {
   char name[ETHD__SERVO_NAME_MAX];
   int32_t line, role;                                    /* role -1: none */
   int32_t direction, space, type, order, unit, reversed; /* reversed: 1 where sign is -1 */
-  uint32_t bus_unit;                                     /* the unit that has it */
+  uint32_t bus_unit;                                     /* its unit on the bus */
   uint32_t address;                                      /* as on the wire, from 0 */
   double scale, offset, min, max, ratio;
   double counts, torque_constant;    /* per motor turn; Nm/A */
   uint32_t bits;                     /* width of a position's counter */
-  double speed_max;                  /* rad/s of the joint: a counter that is faster jumped */
+  double speed_max;                  /* rad/s of the joint: a faster counter jumped */
   double freeze_torque, freeze_time; /* Nm, s: as in encoder/unwrap.h; a torque of 0: a share of the largest */
   double reverse_torque, reverse_time, inertia;
   uint32_t every;                 /* exchanges from one reading to the next; 1: in each */
@@ -110,7 +110,7 @@ typedef struct ethd__servo_register {
   int32_t echo;                   /* the register that holds the same raw value after a write; -1: none */
   int32_t absolute;               /* 1: a position that means the same angle after the drive was without power */
   bool cyclic;                    /* part of every exchange */
-  bool unconfirmed;               /* its address's line says so: no document of the maker names it */
+  bool unconfirmed;               /* marked so at its address: no document of the maker names it */
 } ethd__servo_register;
 
 enum { ETHD__SERVO_STEP_WRITE, ETHD__SERVO_STEP_WAIT, ETHD__SERVO_STEP_PAUSE };
@@ -133,22 +133,22 @@ extern const char *const ethd__servo_sequences[ETHD__SERVO_SEQUENCES];
 
 typedef struct ethd__servo_map {
   int32_t transport, format, exchange, addressing;
-  int32_t crc, local_echo; /* of rtu: order of the checksum's bytes; 1: what is sent comes back first */
-  int32_t rs485;           /* who switches its direction: 0 the adapter, 1 RTS high while sending, 2 RTS low */
+  int32_t crc, local_echo; /* of rtu: order of the checksum's bytes; 1: sent bytes come back first */
+  int32_t rs485;           /* direction switched by: 0 the adapter, 1 RTS high while sending, 2 RTS low */
   char port[ETHD__SERVO_PORT_MAX];
   uint32_t baud, unit, base, divisor, gap;
   double turnaround; /* s: from the end of a question to the begin of its answer; 0: not known */
   double connect, response, drain, silence, back_off; /* s */
   int32_t watchdog, resumes;
-  int32_t guardian; /* a process that writes zero when we are silent: where the drive has no watchdog, never, always */
+  int32_t guardian;     /* a process that writes zero when we are silent: without a watchdog, never, always */
   double watchdog_time; /* s */
   ethd__servo_register registers[ETHD__SERVO_REGISTERS_MAX];
   uint32_t count;
-  int32_t roles[ETHD__SERVO_ROLES]; /* the register of each role; -1 where the map has none */
+  int32_t roles[ETHD__SERVO_ROLES]; /* the register of each role; -1: none */
   ethd__servo_steps sequences[ETHD__SERVO_SEQUENCES];
 } ethd__servo_map;
 
-/* Words that stand side by side in one unit. */
+/* Adjacent words in one unit. */
 typedef struct ethd__servo_span {
   uint32_t unit;
   int32_t space;
@@ -173,7 +173,7 @@ bool ethd__servo_unit_has(const ethd__servo_map *map, int axis, bool (*is)(const
 /* Returns how many registers' addresses say `; unconfirmed`. [any] */
 uint32_t ethd__servo_unconfirmed(const ethd__servo_map *map);
 
-/* Returns sentence i about what this map leaves open: no watchdog, no echo, ...; NULL behind the last. [main] */
+/* Returns sentence i about a gap of this map: no watchdog, no echo, ...; NULL after the last. [main] */
 const char *ethd__servo_risk(const ethd__servo_map *map, uint32_t i);
 
 #endif

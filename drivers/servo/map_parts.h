@@ -1,4 +1,4 @@
-/* What the files that read a map share. All [main]. */
+/* Shared by the files that read a map. All [main]. */
 #ifndef ETHD__SERVO_MAP_PARTS_H
 #define ETHD__SERVO_MAP_PARTS_H
 
@@ -8,8 +8,8 @@
 /* Refuses a value: "file:line: section.key: found X, `allowed` is allowed". */
 ethd_status ethd__servo_refuse(const ethd__key_file *s, const ethd_ini_key *key, const char *allowed);
 
-/* Read the keys of [bus] and [watchdog] into the map and those of [register NAME] into a register; keys that aren't
-   there get their defaults. `line` is that of the section, 0 without one. */
+/* Read the keys of [bus] and [watchdog] into the map and those of [register NAME] into a register; missing keys get
+   their defaults. `line` is that of the section, 0 without one. */
 ethd_status ethd__servo_read_bus(const ethd__key_file *s, int line, ethd__servo_map *map);
 ethd_status ethd__servo_read_watchdog(const ethd__key_file *s, int line, ethd__servo_map *map);
 ethd_status ethd__servo_read_register(const ethd__key_file *s, const ethd_ini_section *section,
@@ -22,7 +22,7 @@ ethd_status ethd__servo_read_steps(const ethd__key_file *s, const char *section,
 /* Finds the register of this name; -1: none. */
 int32_t ethd__servo_find(const ethd__servo_map *map, const char *name, size_t length);
 
-/* Checks what one key alone can't show: overlaps, limits, echoes, roles. */
+/* Checks the conditions between keys: overlaps, limits, echoes, roles. */
 ethd_status ethd__servo_map_check(const ethd__key_file *s, ethd__servo_map *map);
 
 #endif

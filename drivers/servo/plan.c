@@ -78,7 +78,7 @@ static uint32_t arrange(const ethd__servo_map *map, int32_t direction, uint32_t 
   }
 }
 
-/* Makes the last write and the first read of each unit one question: what it reads may be an echo of the writes. */
+/* Makes the last write and the first read of each unit one question: the read may be an echo of the writes. */
 static void combine(ethd__servo_plan *p) {
   for (uint32_t w = 0; w < p->write_count; w++) {
     uint32_t unit = p->writes[w].span.unit, r = 0;

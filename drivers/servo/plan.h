@@ -1,5 +1,5 @@
-/* The questions of one exchange. Registers that stand side by side in one unit and are read equally often share a
-   question; questions about slow registers are spread over the exchanges. */
+/* The questions of one exchange. Adjacent registers of one unit with the same reading rate share a question; questions
+   about slow registers are spread over the exchanges. */
 #ifndef ETHD__SERVO_PLAN_H
 #define ETHD__SERVO_PLAN_H
 
@@ -15,7 +15,7 @@ typedef struct ethd__servo_block {
   int32_t with;          /* the other half of a question that writes and reads; -1: none */
   uint32_t every, phase; /* asked when the exchange's number modulo every is phase */
   bool fresh;            /* asked in the last exchange */
-  int64_t asked_ns;      /* CLOCK_MONOTONIC: before the question last went out; what it says isn't older */
+  int64_t asked_ns;      /* CLOCK_MONOTONIC: before the question was last sent; its answer isn't older */
   uint16_t words[ETHD__SERVO_READ_MAX];
 } ethd__servo_block;
 
@@ -26,23 +26,23 @@ typedef struct ethd__servo_plan {
   int32_t block[ETHD__SERVO_REGISTERS_MAX];   /* of a cyclic register; -1: none */
   uint32_t offset[ETHD__SERVO_REGISTERS_MAX]; /* its first word there */
   uint32_t turn;                              /* exchanges so far */
-  bool all;                                   /* the next one asks for everything: nothing is known yet */
+  bool all;                                   /* the next exchange reads all registers: none is known yet */
 } ethd__servo_plan;
 
 /* Makes the plan of a map. [main] */
 void ethd__servo_plan_make(const ethd__servo_map *map, ethd__servo_plan *out);
 
-/* Returns where a cyclic register's words stand. [any] */
+/* Returns the place of a cyclic register's words. [any] */
 uint16_t *ethd__servo_plan_words(ethd__servo_plan *plan, const ethd__servo_map *map, int32_t r);
 
 /* True when the register was read in the last exchange. [any] */
 bool ethd__servo_plan_fresh(const ethd__servo_plan *plan, int32_t r);
 
-/* When the register was last asked for: its value is as young as this, or younger. [any] */
+/* Time of the register's last question: its value is not older. [any] */
 int64_t ethd__servo_plan_asked(const ethd__servo_plan *plan, int32_t r);
 
-/* Asks the questions in order, writes first, and stops at the first that isn't DONE. After a write that wasn't, the
-   next exchange begins with the unit behind it, so that a unit that is gone never keeps a set-point from the others. */
+/* Sends the questions in order, writes first, and stops at the first that isn't DONE. After a failed write the next
+   exchange begins with the unit after it, so that a missing unit never keeps a set-point from the others. */
 ethd__servo_outcome ethd__servo_plan_ask(ethd__servo_plan *plan, ethd__servo_bus *bus);
 
 #endif

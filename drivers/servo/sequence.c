@@ -1,4 +1,4 @@
-/* Does the steps of [identify], [enable], [disable] and [clear], one in each turn. */
+/* Runs the steps of [identify], [enable], [disable] and [clear], one in each cycle. */
 #include "servo/link.h"
 #include "servo/words.h"
 #include "text/error_text.h"
@@ -19,7 +19,7 @@ static ethd__servo_outcome write_step(ethd__servo_link *l, const ethd__servo_ste
   return ethd__servo_bus_write(&l->bus, ethd__servo_span_of(r), words);
 }
 
-/* Uses the bits that were read within this turn; registers that weren't read in it are asked for. */
+/* Uses the bits that were read in this cycle; registers that weren't read in it are read now. */
 static ethd__servo_outcome read_bits(ethd__servo_link *l, const ethd__servo_step *s, uint32_t *bits) {
   const ethd__servo_register *r = &l->map->registers[s->at];
   uint16_t words[2];

@@ -21,7 +21,7 @@ static void add_edges(ethd__servo_device *d, ethd_sense *out) {
   memcpy(d->seen_worst, s->worst, sizeof s->worst);
 }
 
-/* Of two units, one is asked after the other: the later sample is the sense's, and the other has its age. */
+/* Two units are read one after the other: the sense has the later sample's time, and the other sample has an age. */
 static void add_ages(const ethd__servo_device *d, ethd_sense *out) {
   const int64_t *later = d->newest.later_ns, last = later[0] > later[1] ? later[0] : later[1];
   out->time_ns += last;

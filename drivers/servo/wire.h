@@ -1,4 +1,4 @@
-/* Works out from the map, before any drive is asked, how long an exchange takes on its wire. */
+/* Computes the duration of an exchange on its wire from the map alone. */
 #ifndef ETHD__SERVO_WIRE_H
 #define ETHD__SERVO_WIRE_H
 
@@ -7,11 +7,11 @@
 typedef struct ethd__servo_wire {
   uint32_t questions; /* in an exchange, without those about slow registers */
   uint32_t bytes;     /* of the questions and their answers */
-  double usual;       /* s that these take, with turnarounds and silences */
+  double usual;       /* s: their duration, with turnarounds and silences */
   double most;        /* s, with all questions about slow registers that may fall into one exchange */
 } ethd__servo_wire;
 
-/* Works it out from baud, format, bytes, silences and turnaround; for tcp from the turnarounds alone, as the
+/* Computes it from baud, format, bytes, silences and turnaround; for tcp from the turnarounds alone, as the
    network's rate isn't known. `turnaround` is the time from the end of a question to the beginning of its answer, s;
    NAN means the map's. [any] */
 ethd__servo_wire ethd__servo_wire_of(const ethd__servo_map *map, double turnaround);

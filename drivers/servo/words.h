@@ -20,17 +20,17 @@ double ethd__servo_unpack(const ethd__servo_register *r, const uint16_t *words);
 /* Returns the words as one unsigned number. [any] */
 uint32_t ethd__servo_bits(const ethd__servo_register *r, const uint16_t *words);
 
-/* Converts a joint's torque, Nm, to a raw number within the register's limits, rounded towards no torque: the drive
-   never gets more than was asked for. NaN is no torque. [any] */
+/* Converts a joint's torque, Nm, to a raw number within the register's limits, rounded towards zero: the drive never
+   gets more than the command. NaN gives zero. [any] */
 double ethd__servo_raw(const ethd__servo_register *r, double joint);
 
 /* Converts a raw number to SI at the joint. [any] */
 double ethd__servo_joint(const ethd__servo_register *r, double raw);
 
-/* Returns how much one unit of the register is in SI at the motor. [any] */
+/* Returns the size of one unit of the register in SI at the motor. [any] */
 double ethd__servo_factor(const ethd__servo_register *r);
 
-/* Returns the smallest torque, Nm at the joint, other than none; 0 for f32. [any] */
+/* Returns the smallest nonzero torque, Nm at the joint; 0 for f32. [any] */
 double ethd__servo_least(const ethd__servo_register *r);
 
 /* Returns the largest torque at the joint that the register's limits allow in both directions. [any] */

@@ -7,7 +7,7 @@
 
 #define RUBBING 10.0   /* tanh is +-1 within 4e-9 beyond it */
 #define TURN 2.0       /* largest change of its argument in a step towards 0 */
-#define SHORTEST 1e-12 /* of the rest of the step: a turn within less, or a NaN, isn't followed */
+#define SHORTEST 1e-12 /* of the rest of the step: a reversal within less, or a NaN, isn't followed */
 
 typedef struct kind {
   bool serial, compliant, coupled;
@@ -45,7 +45,7 @@ ETHD__INLINE ethd__two rub(const ethd__arms_body *b, workings *w, int k) {
   return b->friction * w->rub[k] + b->viscous * w->slip[k];
 }
 
-/* Computes the torques on the links, and where the motors have coordinates of their own, their terms k + 1. */
+/* Computes the torques on the links, and, if the motors have their own coordinates, their terms k + 1. */
 ETHD__INLINE ethd__two drive(const ethd__arms_body *b, ethd__arms_series *s, workings *w, kind has, int k) {
   ethd__two torque = k ? ethd__both(0) : b->torque, d;
   if (has.compliant) {
@@ -105,9 +105,9 @@ ETHD__INLINE void accelerate_all(troop *e, kind has, int k) {
   for (int i = 0; i < ETHD__ARMS; i++) accelerate(e, i, has, k);
 }
 
-/* ---- how many terms, how far ---- */
+/* ---- number of terms, length of a step ---- */
 
-/* Returns how much term k changes the arms' speeds over the whole step, m/s: the largest change of all arms. */
+/* Returns the change of the arms' speeds by term k over the whole step, m/s: the largest of all arms. */
 ETHD__INLINE double speed(const troop *e, kind has, int k, const double *reach) {
   double most = 0;
   for (int i = 0; i < ETHD__ARMS; i++) {

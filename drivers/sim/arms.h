@@ -1,8 +1,8 @@
 /* ETHD__ARMS arms of one kind, side by side, without finger and pad: the equations of body.h by the series of series.h,
-   for a caller who asks how several plants, or states, respond to the same commands. The arms share their steps, which
-   are as short as the most demanding arm needs, so that differences between nearly equal arms are smooth. Working
-   several arms out together is also quick: within one arm each term waits for the one before it, and the processor has
-   the other arms' terms to work on meanwhile. */
+   to compare the responses of several plants, or states, to the same commands. The arms share their steps. The most
+   demanding arm sets the step's length, so that differences between nearly equal arms are smooth. Computing several
+   arms together is also fast: within one arm each term depends on the term before it, and meanwhile the processor
+   computes the other arms' terms. */
 #ifndef ETHD__SIM_ARMS_H
 #define ETHD__SIM_ARMS_H
 
@@ -24,7 +24,7 @@ typedef struct ethd__arms {
   ethd__arms_body body[ETHD__ARMS];
 } ethd__arms;
 
-/* Absolute angles of the links, angles of the joints' motor sides where the transmission gives way, and their
+/* Absolute angles of the links, angles of the joints' motor sides if the transmission is compliant, and their
    speeds. */
 typedef struct ethd__arms_state {
   ethd__two link, link_v, motor, motor_v;
@@ -43,17 +43,17 @@ typedef struct ethd__arms_step {
   ethd__arms_series series[ETHD__ARMS];
 } ethd__arms_step;
 
-/* Prepares arms. The bodies must have the same mechanism and tolerance, and either all or none have a transmission that
-   gives way. */
+/* Prepares arms. The bodies must have the same mechanism and tolerance, and either all or none have a compliant
+   transmission. */
 void ethd__arms_prepare(const ethd__body bodies[ETHD__ARMS], ethd__arms *out) ETHD_RT;
 
 void ethd__arms_put(ethd__arms_state *out, const ethd__sim_state *state) ETHD_RT;
 
-/* Makes a step from step->to on, at most left[i] s long for arm i. Returns whether all arms took the whole of it; else
-   each took the same share. */
+/* Makes a step from step->to on, at most left[i] s long for arm i. Returns whether all arms made it in full; else each
+   made the same share. */
 bool ethd__arms_advance(const ethd__arms *arms, const double left[ETHD__ARMS], ethd__arms_step *step) ETHD_RT;
 
-/* Fills an arm's joint angles, as ethd__body_joints has them, `at` s after the step's beginning. */
+/* Fills an arm's joint angles, as ethd__body_joints does, `at` s after the step's beginning. */
 void ethd__arms_joints(const ethd__arms *arms, const ethd__arms_step *step, int arm, double at, double out[2]) ETHD_RT;
 
 #endif

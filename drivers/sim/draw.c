@@ -4,7 +4,7 @@
 
 #define CUT 2.0       /* sd */
 #define CUT_SPEED 2.5 /* sd */
-#define SLOWED 3.0    /* times as fast as at the wall, at most, is a movement of minimum jerk on its way */
+#define SLOWED 3.0    /* largest ratio of a minimum-jerk movement's top speed to its speed at the wall */
 
 /* Returns the largest speed of a movement of minimum jerk over its speed after this share of its length. */
 static double largest(double share) {

@@ -48,7 +48,7 @@ static ethd_status create(const ethd_device_def *def, const ethd__sim_settings *
     ethd_vec meet = {s->p[ETHD__SIM_MEET_X], s->p[ETHD__SIM_MEET_Y]};
     ethd_sim_draw(&d->def.plant, (uint64_t)s->p[ETHD__SIM_SEED], (uint64_t)s->p[ETHD__SIM_TAP], s->p[ETHD__SIM_SPEED],
                   meet, &d->tap);
-    if (d->no_finger) { /* then only the ring stands there */
+    if (d->no_finger) { /* then there is only the ring */
       d->tap.path.from = meet;
       d->tap.path.to_x = meet.x;
     }
@@ -74,7 +74,7 @@ static ethd_status sim_open(const ethd_device_def *def, void **out, char message
   return create(def, &s, d, message);
 }
 
-/* Begins the tap anew. */
+/* Begins the tap again. */
 static ethd_status start(void *device_) {
   device *d = device_;
   d->safe = 0;

@@ -14,7 +14,7 @@ static void hold(ethd_vec x, double begin, double end, ethd__piece *out) {
 
 /* ---- synthetic, speed constant between ramps ---- */
 
-/* Returns for how long the speed is constant. Ramps cover half of what the constant speed would in their time. A path
+/* Returns the time of constant speed. Ramps cover half of what the constant speed would in their time. A path
    that is too short for its ramps keeps its speed, and so ends beyond to_x. */
 static double cruise_time(const ethd_path *path) {
   double length = fabs(path->to_x - path->from.x);

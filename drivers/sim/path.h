@@ -1,4 +1,4 @@
-/* Pieces of the hand's path, within which it is smooth: an integration step never spans two. */
+/* The smooth pieces of the hand's path. An integration step never spans two. */
 #ifndef ETHD__SIM_PATH_H
 #define ETHD__SIM_PATH_H
 
@@ -16,7 +16,7 @@ typedef struct ethd__piece {
 
 enum { ETHD__PATH_TERMS = 6 };
 
-/* Fills the piece that holds at t and right after it. [any, rt-safe] */
+/* Fills the piece that contains t and the time right after it. [any, rt-safe] */
 void ethd__path_piece(const ethd_path *path, double t, ethd__piece *out) ETHD_RT;
 
 typedef struct ethd__sim_motion {
@@ -31,7 +31,7 @@ ethd__sim_motion ethd__piece_at(const ethd__piece *piece, double t) ETHD_RT;
    ethd__piece_at. Term k beyond these is -w^2 / (k (k - 1)) times term k - 2. */
 void ethd__piece_terms(const ethd__piece *piece, const ethd__sim_motion *at, ethd__two out[ETHD__PATH_TERMS]) ETHD_RT;
 
-/* Returns a bound on |x| + |y| of how far the path goes within h of the instant of `at`, if the piece lasts so long. */
+/* Returns a bound on the path's travel, |x| + |y|, within h of the instant of `at`, if the piece lasts until then. */
 double ethd__piece_travel(const ethd__piece *piece, const ethd__sim_motion *at, double h) ETHD_RT;
 
 #endif

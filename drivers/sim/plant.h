@@ -11,14 +11,14 @@
 extern const ethd__key_row ethd__plant_rows[];
 extern const size_t ethd__plant_row_count;
 
-/* Checks each row, and what must hold between rows; the error's name is "section.key". [main] */
+/* Checks each row, and the conditions between rows; the error's name is "section.key". [main] */
 ethd_status ethd__plant_check(const ethd_plant *plant, ethd_error *error);
 ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error);
 
-#define ETHD__PLANT "q" /* the plant where none is named */
+#define ETHD__PLANT "q" /* the default plant */
 
-/* Returns where a plant is: a file, relative to `folder`; "q" is q.plant there, else among the files that came with the
-   programs (ETHD_DATA_DIR, by default ../share/ethd of the program's folder). The caller frees it; NULL: no memory.
+/* Returns the path of a plant's file, relative to `folder`. "q" is q.plant there, else among the files installed with
+   the programs (ETHD_DATA_DIR, by default ../share/ethd of the program's folder). The caller frees it; NULL: no memory.
    [main] */
 char *ethd__plant_path(const char *plant, const char *folder);
 

@@ -1,4 +1,4 @@
-/* Random numbers as a function of a key: nothing is remembered between calls.
+/* Random numbers as a function of a key: no state is kept between calls.
 
    Philox 4x32-10 (Salmon et al., SC 2011) over the counter (tap, stream, counter) under the key `seed`.
    Bits are equal on every machine. [any, rt-safe] */
@@ -13,7 +13,7 @@ typedef struct ethd__sim_key {
   uint64_t seed, tap;
 } ethd__sim_key;
 
-/* What a number is drawn for. */
+/* The purpose of a number. */
 enum {
   ETHD__STREAM_SPEED,
   ETHD__STREAM_RADIUS,

@@ -103,7 +103,7 @@ static void take_nail(const ethd__sensors *s, ethd_vec relative, ethd__sim_readi
   if (!ethd__nail_centre(&s->nail, distance, &out->centre)) out->have = 0;
 }
 
-/* Takes the reading of a sensor that sees everything at one instant. */
+/* Samples a sensor that measures everything at one instant. */
 static void take_whole(ethd__sensors *s, ethd_vec ring, ethd_vec finger, ethd__sim_reading *out) {
   ethd_vec relative = ethd_vec_sub(finger, ring);
   switch (s->plant.reading) {

@@ -1,4 +1,4 @@
-/* What the device measures: joint angles in counts, and the finger by one of the sensors of sim.h. All [any, rt-safe]
+/* The device's measurements: joint angles in counts, and the finger by one of the sensors of sim.h. All [any, rt-safe]
    except ethd__sensors_create. */
 #ifndef ETHD__SIM_SENSORS_H
 #define ETHD__SIM_SENSORS_H
@@ -11,16 +11,16 @@
 
 #define ETHD__READINGS_MAX 64
 
-/* A reading that was taken and isn't delivered yet. */
+/* A reading that was sampled and isn't delivered yet. */
 typedef struct ethd__sim_reading {
-  int64_t sample_ns, due_ns, have; /* have: ETHD_HAVE_*; 0: the sensor saw nothing of use */
+  int64_t sample_ns, due_ns, have; /* have: ETHD_HAVE_*; 0: no usable reading */
   ethd_vec centre, ring;
-  double noise; /* m: as the sensor says; 0: it doesn't */
+  double noise; /* m: as the sensor reports; 0: not reported */
   double rays[16];
 } ethd__sim_reading;
 
-/* A reading is made of parts, each taken at an instant of its own: a centre has one; a frame has its rays in order, and
-   in their middle the instant that stands for the whole. */
+/* A reading consists of parts, each sampled at its own instant. A centre has one part. A frame has its rays in order;
+   the instant in their middle is the frame's. */
 typedef struct ethd__sensors {
   ethd_plant plant;
   double ring_radius, finger_radius, phase;
@@ -30,17 +30,17 @@ typedef struct ethd__sensors {
   ethd__nail nail;
   double count_phase[2]; /* counts */
   uint32_t sample, part; /* the next part, */
-  double next;           /* s: and when it is taken */
+  double next;           /* s: and the instant of its sampling */
   uint64_t taken;        /* complete readings */
   ethd__sim_reading readings[ETHD__READINGS_MAX];
 } ethd__sensors;
 
-/* Sets what doesn't change from tap to tap. [main] */
+/* Sets the constants of all taps. [main] */
 void ethd__sensors_create(ethd__sensors *sensors, const ethd_sim_def *def);
 
 void ethd__sensors_start(ethd__sensors *sensors, const ethd_sim_def *def, const ethd_sim_tap *tap) ETHD_RT;
 
-/* Takes the next part from the state at its instant. */
+/* Samples the next part from the state at its instant. */
 void ethd__sensors_take(ethd__sensors *sensors, const ethd__body *body, const ethd__sim_state *state) ETHD_RT;
 
 /* Fill the sense: the joint angles, from the coordinates; the newest reading that is due at its time_ns and wasn't due

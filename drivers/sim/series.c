@@ -108,7 +108,7 @@ typedef struct physics {
   ethd__touch touch;
 } physics;
 
-/* Computes the torques on the links, and where the motors have coordinates of their own, their terms k + 1. */
+/* Computes the torques on the links, and, if the motors have their own coordinates, their terms k + 1. */
 ETHD__INLINE ethd__two drive(expansion *w, physics has, int k) {
   const ethd__body *b = w->body;
   ethd__series *s = w->out;
@@ -172,7 +172,7 @@ ETHD__INLINE void accelerate(expansion *w, physics has, int k) {
   s->aside_v[k + 1] = f * ethd__both(ETHD__INVERSE[k + 1] * w->inverse_mass);
 }
 
-/* ---- how many terms, how far ---- */
+/* ---- number of terms, length of a step ---- */
 
 ETHD__INLINE double speed(const expansion *w, physics has, int k) {
   const ethd__series *s = w->out;
@@ -226,7 +226,7 @@ static double expand_kind(expansion *w, physics has) {
   return expand(w, (physics){.touch = ETHD__APART});
 }
 
-/* ---- what touches ---- */
+/* ---- touch ---- */
 
 static void watch_apart(expansion *w) {
   ethd__series *s = w->out;
@@ -244,7 +244,7 @@ static void watch_touching(expansion *w, ethd__touch touch) {
   for (int k = measured + 1; k <= s->watched; k++) measure(w, k);
 }
 
-/* While pad and ring are known to be apart, their distance is worked out only when they may have come near. */
+/* While pad and ring are known to be apart, their distance is computed only if they may have come near. */
 static void keep_clear(expansion *w, const ethd__piece *piece, const ethd__sim_motion *hand, double clearance,
                        double most) {
   ethd__series *s = w->out;

@@ -28,7 +28,7 @@ extern const ethd_param ethd__sim_params[ETHD__SIM_PARAMS];
 extern const char *const ethd__sim_keys[]; /* ends with NULL */
 
 typedef struct ethd__sim_settings {
-  double p[ETHD__SIM_PARAMS]; /* ETHD__SIM_FINGER to ETHD__SIM_ANGLE: NaN: as the plant says */
+  double p[ETHD__SIM_PARAMS]; /* ETHD__SIM_FINGER to ETHD__SIM_ANGLE: NaN: the plant's value */
   const ethd_setting *plant;  /* NULL: ETHD__PLANT */
 } ethd__sim_settings;
 
@@ -36,7 +36,7 @@ typedef struct ethd__sim_settings {
 ethd_status ethd__sim_settings_read(const ethd_device_def *def, ethd__sim_settings *out,
                                     char message[ETHD_MESSAGE_MAX]);
 
-/* Puts the sensor of the finger for which the settings ask into a plant. [any] */
+/* Puts the finger sensor of the settings into a plant. [any] */
 void ethd__sim_settings_finger(const ethd__sim_settings *settings, ethd_plant *plant);
 
 #endif

@@ -62,7 +62,7 @@ static bool samples_rise(const ethd_path *path) {
   return true;
 }
 
-/* Returns true if no two samples need a hand faster than any. */
+/* Returns true unless two samples need an impossibly fast hand. */
 static bool samples_are_slow(const ethd_path *path) {
   for (size_t i = 1; i < path->sample_count; i++) {
     const ethd_path_sample *s = path->samples + i;
@@ -95,7 +95,7 @@ static ethd__sim_state state_at(const ethd_sim *sim, double t) {
   return state;
 }
 
-/* Takes the proximity samples up to t, which lies in the present step. */
+/* Computes the proximity samples up to t, which is in the present step. */
 static void take_due(ethd_sim *sim, double t) {
   while (sim->sensors.next <= t) {
     ethd__sim_state state = state_at(sim, sim->sensors.next);

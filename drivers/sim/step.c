@@ -6,9 +6,9 @@
 #include "sim/terms.h"
 
 #define LOCATED 1e-12  /* s, to which an event is located */
-#define SHORTEST 1e-15 /* s: a turn within less, or a NaN, isn't followed */
+#define SHORTEST 1e-15 /* s: a reversal within less, or a NaN, isn't followed */
 #define RUBBING 10.0   /* tanh is +-1 within 4e-9 beyond it */
-#define TURN 2.0       /* by which its argument may change in a step that comes nearer to 0, */
+#define TURN 2.0       /* largest change of its argument in a step towards 0, */
 #define PACE 5e3       /* 1/s: but by no more than this times the grid's cell, so that half the cell halves each step */
 
 static double value(const ethd__two *term, int order, double h) ETHD_RT { return ethd__series_at(term, order, h)[0]; }
@@ -19,7 +19,7 @@ static double slope(const ethd__two *term, int order, double h) ETHD_RT {
   return y;
 }
 
-/* Bounds how far y can go from where it begins within h, by adding up the sizes of all terms. */
+/* Bounds the change of y from its beginning within h, by adding the sizes of all terms. */
 static double reach(const ethd__two *term, int order, double h) {
   double y = fabs(term[order][0]);
   for (int k = order - 1; k > 0; k--) y = y * h + fabs(term[k][0]);

@@ -4,7 +4,7 @@
 
 #include "sim/body.h"
 
-/* All is inlined: sums have lengths known at compile time, and terms that a plant doesn't have disappear. */
+/* All is inline: sums have constant lengths, and the compiler removes the terms that a plant lacks. */
 #define ETHD__INLINE static inline __attribute__((always_inline))
 
 /* 1 / k for k > 0 */
@@ -34,7 +34,7 @@ ETHD__INLINE ethd__two ethd__middle(const ethd__two *x, const ethd__two *y, int 
   return s;
 }
 
-/* Term k of x y. Term k of x, which is ready last, is added last, so that the processor sums the others meanwhile. */
+/* Term k of x y. Term k of x is ready last and is added last, so that the processor sums the others meanwhile. */
 ETHD__INLINE ethd__two ethd__product(const ethd__two *x, const ethd__two *y, int k) {
   if (k == 0) return x[0] * y[0];
   return (ethd__middle(x, y, k) + x[0] * y[k]) + x[k] * y[0];

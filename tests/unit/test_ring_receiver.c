@@ -225,7 +225,7 @@ TEST(test_empty) {
   for (int k = 0; k < ETHD_RAYS; k++) ck_assert_double_eq_tol(c.sensors[k].dark, s.truth.sensors[k].dark, 3);
   c = s.truth;
   ck_assert_int_eq(check_empty(&s, 1, &c, 0), ETHD_E_DEVICE);
-  ck_assert_ptr_nonnull(strstr(message, "are allowed in an empty ring: take out what is in it, or clean it"));
+  ck_assert_ptr_nonnull(strstr(message, "are allowed in an empty ring: remove the object, or clean the ring"));
   c = ethd__calibration_default();
   ck_assert_int_eq(check_empty(&s, 1, &c, 0), ETHD_E_DEVICE);
   ck_assert_int_eq(check_empty(&s, 0, &c, 0), ETHD_OK);
