@@ -34,6 +34,27 @@ assert change.max() <= 12 * 0.002 * (1 + 1e-9), change.max()
 assert np.linalg.norm(ticks["command"][first - 1]) > 0.05 and (ticks["command"][-1] == 0).all()
 END
 
+# ---- a ball, to which the plate has to turn late: the joints' limits leave its point on its way, and it stays at the ball ----
+sed '/^\[scene\]/,$d' $arm >"$folder/ball.ini"
+printf 'arm.hand_beyond = 0.02\narm.hand_seed = SEED\n[scene]\nfile = ball.solids\n[transition]\nrange = 0.1\n' >>"$folder/ball.ini"
+cp apps/config/ur5e.arm "$folder"
+echo 'sphere -0.35662 -0.1333 0.18366 0.12' >"$folder/ball.solids"
+for seed in 3 5 14; do
+  sed "s/SEED/$seed/" "$folder/ball.ini" >"$folder/ball$seed.ini"
+  "$run" --virtual --duration 4.5 --config "$folder/ball$seed.ini" --record "$folder/ball$seed" </dev/null >"$folder/out" 2>&1 || fail "a ball: $(cat "$folder/out")"
+  "${PYTHON:-python3}" - "$folder/ball$seed" <<'END' || fail "the plate leaves its way at a ball, seed $seed"
+import sys
+import numpy as np
+t = np.load(sys.argv[1] + "/tick.npy")
+n = np.array([-0.35662, -0.1333, 0.18366]) - t["x"]
+n /= np.linalg.norm(n, axis=1)[:, None]
+speed = np.sum(np.gradient(t["x"], 0.002, axis=0) * n, axis=1)[t["state"] == 2]
+off = np.abs(t["commanded"][6:] - t["command"][5:-1]).max()
+print(f"slowest at the ball {speed.min():.3f} m/s, commands changed by {off:.3f} m/s")
+assert len(speed) > 100 and speed.min() > -0.03 and off < 0.03
+END
+done
+
 # ---- real: commands on stdin, telemetry ----
 cat >"$folder/udp.py" <<'END'
 import json, socket, sys

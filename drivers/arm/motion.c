@@ -8,6 +8,7 @@
 #define DRAWN 0.1   /* of a joint's speed: limit of the motion towards the posture */
 #define NEAR 1e-14  /* m */
 #define CORRECTIONS 4
+#define HALVINGS 6       /* in the search for the largest share of a rotation */
 #define ALMOST_NONE 1e-9 /* rad or m for each m along n: a smaller motion limits nothing */
 
 static uint32_t rows_of(const ethd__arm_table *table) { return table->turn > 0 ? 5 : 3; }
@@ -96,12 +97,32 @@ static void straighten(const ethd__arm_motion *m, double *dq) {
   }
 }
 
+/* The point comes first: from the present speeds, those that change its velocity alone; then as much of the rest, the
+   plate's rotation and the motion to the posture, as binds no joint. */
+static void prefer_point(const ethd__arm_motion *m, ethd_vec3 v, double *dq) {
+  const uint32_t count = m->table->limits.count;
+  const ethd_joint_limits *limits = &m->table->limits;
+  double task[ETHD__TASK_MAX] = {0}, base[ETHD_JOINTS_MAX], bounded[ETHD_JOINTS_MAX], share = 0;
+  ethd_vec3_put(ethd_vec3_sub(v, ethd__linkage_sum(m->tool.j, m->dq, count)), task);
+  ethd__inverse_solve(&m->inverse, task, base);
+  for (uint32_t i = 0; i < count; i++) bounded[i] = base[i] += m->dq[i];
+  const bool is_free = ethd_guard_joints(limits, m->q, m->dq, bounded).joint < 0;
+  for (int k = 1; is_free && k <= HALVINGS; k++) {
+    double more[ETHD_JOINTS_MAX];
+    for (uint32_t i = 0; i < count; i++) more[i] = base[i] + (share + ldexp(1, -k)) * (dq[i] - base[i]);
+    if (ethd_guard_joints(limits, m->q, m->dq, more).joint < 0) share += ldexp(1, -k);
+  }
+  for (uint32_t i = 0; i < count; i++) dq[i] = is_free ? base[i] + share * (dq[i] - base[i]) : bounded[i];
+}
+
 ethd_joints_ruling ethd__arm_motion_step(ethd__arm_motion *m, ethd_vec3 v, const double *normal) {
-  double task[ETHD__TASK_MAX], dq[ETHD_JOINTS_MAX];
+  double task[ETHD__TASK_MAX], dq[ETHD_JOINTS_MAX], bounded[ETHD_JOINTS_MAX];
   task_of(m, v, normal, task);
   ethd__inverse_solve(&m->inverse, task, dq);
   draw_to_posture(m, dq);
-  ethd_joints_ruling ruling = ethd_guard_joints(&m->table->limits, m->q, m->dq, dq);
+  memcpy(bounded, dq, sizeof bounded);
+  ethd_joints_ruling ruling = ethd_guard_joints(&m->table->limits, m->q, m->dq, bounded);
+  if (ruling.joint >= 0) prefer_point(m, v, dq);
   straighten(m, dq);
   const ethd_joints_ruling last = ethd_guard_joints(&m->table->limits, m->q, m->dq, dq);
   if (ruling.joint < 0) ruling = last;

@@ -277,9 +277,11 @@ typedef struct ethd_joints_ruling {
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_joint_limits_check(const ethd_joint_limits *limits, ethd_error *error);
 
 /* Bounds a command, rad/s or Nm by limits->kind, in place and returns the limit that bound it. q, rad, and v, rad/s: as
-   said above. The vector is scaled as a whole, to the largest share that every joint allows. A joint is bounded alone
-   (`turned`) if it allows no share, since it must first brake or reverse, or if it exceeds its bound by less than a
-   millionth of the largest requested number. So an arm with a joint at its bound stands still under a command beyond
+   said above. The vector is scaled as a whole, to the largest share that every joint's position and speed (or torque)
+   allow. A speed then goes from v towards that, again as a whole, by the largest share that every acceleration allows:
+   so the arm's velocity is always between v and the request, and never has a third direction. A joint is bounded alone
+   if it must brake for its position, or if it exceeds its bound by less than a millionth of the largest requested
+   number. So an arm with a joint at its bound stands still under a command beyond
    it, and obeys a command away from it. Beyond its limits, for example after a person moved it, a joint brakes with its
    acceleration and then may only return. If limits contradict, the torque's come first, then the acceleration's. Limits
    that weren't checked, or q or v that aren't finite: zero for every joint, ETHD_JOINTS_FINITE. [rt] */

@@ -37,11 +37,17 @@ static void force(window *w, double lo, double hi, ethd_joints_bound bound) {
   if (w->lo > hi) w->lo = hi, w->below = bound;
 }
 
-/* Returns the allowed speeds of a joint after this period. */
-static window speeds(const ethd_joint_limit *j, double a, double T, double q, double v) {
+/* Returns the speeds that a joint's position and its largest speed allow. */
+static window places(const ethd_joint_limit *j, double a, double T, double q) {
   window w = {-INF, INF, ETHD_JOINTS_FREE, ETHD_JOINTS_FREE};
   narrow(&w, -approach(q - j->least, a, T), approach(j->most - q, a, T), ETHD_JOINTS_POSITION);
   narrow(&w, -j->speed, j->speed, ETHD_JOINTS_FAST);
+  return w;
+}
+
+/* Returns the allowed speeds of a joint after this period. */
+static window speeds(const ethd_joint_limit *j, double a, double T, double q, double v) {
+  window w = places(j, a, T, q);
   if (a < INF) force(&w, v - a * T, v + a * T, ETHD_JOINTS_ACCELERATION);
   return w;
 }
@@ -88,12 +94,76 @@ static double clamp(const window *w, double value, ethd_joints_bound *bound) {
   return value > w->hi ? w->hi : value < w->lo ? w->lo : value;
 }
 
+/* Notes the joint that bound the command, unless one has already. */
+static void note(ethd_joints_ruling *r, uint32_t joint, ethd_joints_bound bound) {
+  if (bound == ETHD_JOINTS_FREE || r->joint >= 0) return;
+  r->joint = (int32_t)joint;
+  if (r->bound != ETHD_JOINTS_FINITE) r->bound = bound;
+}
+
+/* Scales the command to the largest share that every window allows. */
+static void scale(const ethd_joint_limits *limits, const window *w, double most, double *command,
+                  ethd_joints_ruling *r) {
+  ethd_joints_bound bound, by = ETHD_JOINTS_FREE;
+  uint32_t joint = 0;
+  for (uint32_t i = 0; i < limits->count; i++) {
+    const double share = share_of(&w[i], command[i], most);
+    if (share >= r->share) continue;
+    r->share = share;
+    joint = i;
+    (void)clamp(&w[i], command[i], &by);
+  }
+  note(r, joint, by);
+  for (uint32_t i = 0; i < limits->count; i++) {
+    command[i] = clamp(&w[i], r->share * command[i], &bound);
+    note(r, i, bound);
+  }
+}
+
+/* Goes from v, or from the nearest speeds that are allowed, towards the command by the largest share that every joint's
+   acceleration allows: the arm's velocity stays between the two, and takes no other direction. Returns true if the
+   command isn't reached. */
+static bool change(const ethd_joint_limits *limits, const double *q, const double *v, double *command,
+                   ethd_joints_ruling *r) {
+  window w[ETHD_JOINTS_MAX];
+  double from[ETHD_JOINTS_MAX], share = 1;
+  ethd_joints_bound bound, by = ETHD_JOINTS_FREE;
+  uint32_t joint = 0;
+  for (uint32_t i = 0; i < limits->count; i++) {
+    const ethd_joint_limit *j = &limits->joint[i];
+    w[i] = speeds(j, j->acceleration, limits->period, q[i], v[i]);
+    from[i] = clamp(&w[i], v[i], &bound);
+    const double within = clamp(&w[i], command[i], &bound);
+    if (bound == ETHD_JOINTS_FREE) continue;
+    const double part = (within - from[i]) / (command[i] - from[i]);
+    if (part >= share) continue;
+    share = part;
+    joint = i;
+    by = bound;
+  }
+  if (!(share < 1)) return false;
+  note(r, joint, by);
+  for (uint32_t i = 0; i < limits->count; i++)
+    command[i] = clamp(&w[i], from[i] + share * (command[i] - from[i]), &bound);
+  return true;
+}
+
+/* Returns the share of `asked` in the command, 0 to 1. */
+static double share_along(uint32_t count, const double *command, const double *asked) {
+  double along = 0, all = 0;
+  for (uint32_t i = 0; i < count; i++) {
+    along += command[i] * asked[i];
+    all += asked[i] * asked[i];
+  }
+  return all > 0 ? fmin(fmax(along / all, 0), 1) : 1;
+}
+
 ETHD__FP_APART static ethd_joints_ruling bound_all(const ethd_joint_limits *limits, const double *q, const double *v,
                                                    double *command) {
   ethd_joints_ruling r = {.share = 1, .joint = -1};
   window w[ETHD_JOINTS_MAX];
-  double most = 0;
-  ethd_joints_bound bound;
+  double most = 0, asked[ETHD_JOINTS_MAX];
+  const bool by_torque = limits->kind == ETHD_JOINTS_TORQUE;
   const bool known = is_sound(limits) && are_finite(limits, q) && are_finite(limits, v);
   if (!known || !are_finite(limits, command)) {
     r.bound = ETHD_JOINTS_FINITE;
@@ -102,26 +172,14 @@ ETHD__FP_APART static ethd_joints_ruling bound_all(const ethd_joint_limits *limi
   }
   for (uint32_t i = 0; i < limits->count; i++) {
     const ethd_joint_limit *j = &limits->joint[i];
-    w[i] = limits->kind == ETHD_JOINTS_TORQUE ? torques(j, limits->period, q[i], v[i])
-                                              : speeds(j, j->acceleration, limits->period, q[i], v[i]);
+    w[i] = by_torque ? torques(j, limits->period, q[i], v[i]) : places(j, j->acceleration, limits->period, q[i]);
     most = fmax(most, fabs(command[i]));
+    asked[i] = command[i];
   }
-  for (uint32_t i = 0; i < limits->count; i++) {
-    const double share = share_of(&w[i], command[i], most);
-    if (share >= r.share) continue;
-    r.share = share;
-    r.joint = (int32_t)i;
-    (void)clamp(&w[i], command[i], &bound);
-    if (r.bound != ETHD_JOINTS_FINITE) r.bound = bound;
-  }
-  for (uint32_t i = 0; i < limits->count; i++) {
-    const double scaled = r.share * command[i];
-    command[i] = clamp(&w[i], scaled, &bound);
-    if (fabs(command[i] - scaled) > ALONE * most) r.turned = 1;
-    if (r.joint >= 0 || bound == ETHD_JOINTS_FREE) continue;
-    r.joint = (int32_t)i;
-    if (r.bound != ETHD_JOINTS_FINITE) r.bound = bound;
-  }
+  scale(limits, w, most, command, &r);
+  if (!by_torque && change(limits, q, v, command, &r)) r.share = share_along(limits->count, command, asked);
+  for (uint32_t i = 0; i < limits->count; i++)
+    if (fabs(command[i] - r.share * asked[i]) > ALONE * most) r.turned = 1;
   return r;
 }
 

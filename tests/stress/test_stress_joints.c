@@ -141,6 +141,27 @@ TEST(test_the_sampled_way) {
   }
 }
 
+/* Accelerations alone: the change of the speeds is along the requested change, as far as one joint's limit allows. */
+TEST(test_change_keeps_its_direction) {
+  for (uint64_t k = 0; k < 1000; k++) {
+    ethd_joint_limits l = {.count = 3, .period = 0.002};
+    double v[3], wish[3], command[3], share = INFINITY, reached = 0;
+    const double q[3] = {0, 0, 0};
+    for (uint64_t i = 0; i < 3; i++) {
+      l.joint[i] = (ethd_joint_limit){-INFINITY, INFINITY, INFINITY, draw(9 * k + i, 1, 50), INFINITY, 0};
+      v[i] = draw(9 * k + 3 + i, -1, 1);
+      command[i] = wish[i] = draw(9 * k + 6 + i, -1, 1);
+      share = fmin(share, fmin(1, l.joint[i].acceleration * l.period / fabs(wish[i] - v[i])));
+    }
+    (void)ethd_guard_joints(&l, q, v, command);
+    for (int i = 0; i < 3; i++) {
+      ck_assert_double_eq_tol(command[i], v[i] + share * (wish[i] - v[i]), 1e-15);
+      reached = fmax(reached, fabs(command[i] - v[i]) / (l.joint[i].acceleration * l.period));
+    }
+    ck_assert_double_le(reached, 1 + 1e-12);
+  }
+}
+
 /* A joint at its bound stands, with the whole arm, when it is asked to go on, and leaves when it is asked to. */
 TEST(test_resting_at_the_bound) {
   const ethd_joint_limit joint = {-1, 1, 2, 10, 100, 0};
