@@ -1,8 +1,13 @@
 /* Modbus frames of our own against frames that others published, and against every kind of wrong
    answer. */
+#include <errno.h>
 #include <modbus/modbus.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include "clock.h"
+#include "servo/bus_parts.h"
 #include "servo/frame.h"
 #include "unit/rig.h"
 
@@ -125,4 +130,22 @@ TEST(test_wrong_answers) {
   uint8_t elsewhere[] = {1, 16, 0x53, 0x09, 0, 2, 0, 0};
   seal(elsewhere, 8);
   ck_assert_int_eq(ethd__servo_frame_take(&map, &f, elsewhere, 8, NULL), EMBBADDATA);
+}
+
+/* A connection that was reset, or that has ended, is an error at once: no signal, and no wait for the answer. */
+TEST(test_ended_connection) {
+  for (int k = 0; k < 2; k++) {
+    int ends[2];
+    speak(ETHD__SERVO_TCP, 0, 17);
+    map.response = 60;
+    ethd__servo_frame_read(&map, (ethd__servo_span){map.unit, ETHD__SERVO_HOLDING, 0x6B, 3}, &f);
+    ck_assert_int_eq(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+    const ethd__servo_bus bus = {.map = &map, .fd = ends[0]};
+    ck_assert_int_eq(k ? shutdown(ends[1], SHUT_WR) : close(ends[1]), 0);
+    const int64_t began = ethd__clock_now();
+    ck_assert_int_eq(ethd__servo_ask(&bus, &f, words), k ? ECONNRESET : EPIPE);
+    ck_assert_int_lt(ethd__clock_now() - began, 30000000000);
+    close(ends[0]);
+    if (k) close(ends[1]);
+  }
 }
