@@ -279,7 +279,7 @@ judge() {
   figures works.ring | awk '!($1 > 1500 && $2 >= 3 && $4 > 10 && $5 == 0 && $6 > 240 && $6 < 252 && $7 < -0.1) { print "no contact, no swaps, or no line that overtakes" }'
   # the ring went first: the robot's gripper stays where the ring was
   [ "$(code works.robot)" = 1 ] && grep -q '^robot: the gripper at 24[0-9.]* mm, where it stays: no orders come' "$work/works.robot" || echo "the robot: $(cat "$work/works.robot")"
-  [ "$(code dies.ring)" = 1 ] && grep -q ': the application is gone' "$work/dies.ring" || echo "with a line that dies: $(cat "$work/dies.ring")"
+  [ "$(code dies.ring)" = 1 ] && grep -q ': the application has ended' "$work/dies.ring" || echo "with a line that dies: $(cat "$work/dies.ring")"
   figures dies.ring | awk '!($1 > 300 && $7 == 0) { print "it died before a contact, or torque is left" }'
   [ "$(code dies.robot)" = 0 ] || echo "the robot, that ends first: $(cat "$work/dies.robot")"
   # 0.46 m/s without a bound on the wall's speed, which is 0.1 m/s

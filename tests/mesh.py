@@ -69,7 +69,11 @@ said = subprocess.run([mesh, f"{folder}/plate.obj"], capture_output=True, text=T
 x, left = float(said[-1].split()[0]), float(said[-1].split()[4])
 print(f"{1e6 * (x + STAND_OFF):7.3f} um off a plate")
 assert abs(x + STAND_OFF) < 2e-6 and abs(left) < 2e-6, (x, left)
-with open(f"{folder}/line.obj", "w") as out:
-    out.write("v 0 0 0\nv 1 0 0\nl 1 2\n")
-refused = subprocess.run([mesh, f"{folder}/line.obj"], capture_output=True, text=True, check=False)
-assert refused.returncode == 1 and refused.stderr == f"{folder}/line.obj: has no triangle\n", refused
+# Without triangles, and inside out.
+inverted = open(f"{folder}/plate.obj").read().splitlines()
+inverted = [" ".join(["f", *line.split()[:0:-1]]) if line[0] == "f" else line for line in inverted]
+for text in ("v 0 0 0\nv 1 0 0\nl 1 2\n", "\n".join(inverted)):
+    with open(f"{folder}/bad.obj", "w") as out:
+        out.write(text)
+    refused = subprocess.run([mesh, f"{folder}/bad.obj"], capture_output=True, text=True, check=False)
+    assert refused.returncode == 1 and "bad.obj: no closed mesh, or its triangles are clockwise" in refused.stderr, refused

@@ -16,7 +16,7 @@ $CC -std=gnu11 -O2 -Wall -Wextra -Werror -Iinclude apps/examples/mesh.c -o "$fol
 grep -q none.obj "$folder/err" || fail "$(cat "$folder/err")"
 
 # an arm taps a mesh under a law of one's own, as apps/README.md shows: in the end the plate stands at the box
-$CC -shared -fPIC apps/examples/arm_law.c -Iinclude -o "$folder/mine.so" || fail "arm_law.c"
+$CC -shared -fPIC apps/examples/arm_law.c -Iinclude -o "$folder/mine.so" -lm || fail "arm_law.c"
 { printf '[plugins]\nfile = mine.so\n[transition]\nlaw = mine\n'; sed '/^\[scene\]/,$d' apps/config/ur5e.ini; } >"$folder/mesh.ini"
 cp apps/config/ur5e.arm "$folder"
 printf 'v %s\n' '-0.46 -0.6 -0.2' '0 -0.6 -0.2' '0 0.4 -0.2' '-0.46 0.4 -0.2' '-0.46 -0.6 0.8' '0 -0.6 0.8' '0 0.4 0.8' '-0.46 0.4 0.8' >"$folder/box.obj"

@@ -129,4 +129,8 @@ refuse 'space.gapp: no key of' --arm ur5e --set space.gapp=1
 refuse 'transition.effort' --arm ur5e --set transition.effort=2
 refuse 'a number is allowed' --arm ur5e --set transition.effort=much
 refuse 'no-such' --arm ur5e --finger "$folder/no-such.csv"
+# ---- a law of one's own, the example: it does as well as approach ----
+$CC -shared -fPIC -Iinclude apps/examples/arm_law.c -o "$folder/mine.so" -lm || fail "arm_law.c"
+"$BUILD/bin/ethd-tap" --arm ur5e --plugin "$folder/mine.so" --transition mine --taps 20 --delay 0.03 >"$folder/mine" 2>&1 || fail "an own law: $(cat "$folder/mine")"
+awk '/^mine  *0.4 / { n++; if (!($4 == 20 && $5 == 0 && $6 > -0.1 && $6 < 0.1 && $10 < 0.01)) bad = 1 } END { exit !n || bad }' "$folder/mine" || fail "an own law: $(cat "$folder/mine")"
 exit $failed

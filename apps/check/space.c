@@ -1,6 +1,7 @@
 /* The distance before a wall at which a device in space has to react, in closed form. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "check/report.h"
 
@@ -60,6 +61,9 @@ int ethd__report_space(const ethd_space_setup *s, const ethd_device *device) {
   printf("reaction distance        v t_d + v^2/(2a): the finger comes closer by this until the effector stands at the "
          "wall\n");
   printf("  t_d                    %.4g ms: delay %s, and the period %.4g ms\n", 1e3 * r.late, r.from, 1e3 * s->period);
+  if (strcmp(s->transition->law.id, ethd_transition_approach.law.id))
+    printf("  law                    %s isn't judged: these figures are those of a law that brakes with a\n",
+           s->transition->law.id);
   if (isnan(r.a)) {
     printf("  a                      not known: [ability] acceleration, or force and mass, give it\n");
     return 0;

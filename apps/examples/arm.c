@@ -1,6 +1,7 @@
 /* An arm in space, as its configuration says, in a loop of its own thread for some seconds:
      cc arm.c -o arm $(pkg-config --cflags --libs ethd-drivers) -lm && ./arm arm.ini 5
-   With -DMESH it also meets a mesh (mesh.h): cc -DMESH arm.c ... $(pkg-config --libs assimp) -lembree4; ./arm arm.ini 5 FILE */
+   With -DMESH a mesh takes the place of the configuration's solids (mesh.h, which lies beside this file):
+     cc -DMESH arm.c ... $(pkg-config --cflags --libs assimp) -lembree4 && ./arm arm.ini 5 FILE */
 #include <ethd/config.h>
 #include <ethd/loop.h>
 #include <math.h>
@@ -25,9 +26,9 @@ static int fail(const char *message) { return fprintf(stderr, "arm: %s\n", messa
 
 static void print(const ethd_space_row *row) {
   const ethd_space_trace *t = &row->trace;
-  printf("%8.3f s  x %7.4f %7.4f %7.4f m  %8.5f m to the wall  %6.3f m/s  %s, %s\n", 1e-9 * (double)t->sense.time_ns,
-         t->sense.x[0], t->sense.x[1], t->sense.x[2], t->d_re, t->v_n, row->armed ? "armed" : "disarmed",
-         ethd_fault_sentence((ethd_fault)t->fault));
+  printf("%8.3f s  x %7.4f %7.4f %7.4f m  %8.5f m to the wall  %6.3f m/s  finger %7.4f m to it  %s, %s\n",
+         1e-9 * (double)t->sense.time_ns, t->sense.x[0], t->sense.x[1], t->sense.x[2], t->d_re, t->v_n, t->d_fe,
+         row->armed ? "armed" : "disarmed", ethd_fault_sentence((ethd_fault)t->fault));
 }
 
 int main(int argc, char **argv) {
@@ -40,9 +41,9 @@ int main(int argc, char **argv) {
   ethd_space_row row;
 #ifdef MESH
   mesh world;
-  if (argc != 4 || !load(argv[3], &world)) return fail("CONFIG SECONDS MESH"), 2;
+  if (argc != 4 || !load(argv[3], &world)) return fail("usage: arm CONFIG SECONDS MESH"), 2;
 #else
-  if (argc != 3) return fail("CONFIG SECONDS"), 2;
+  if (argc != 3) return fail("usage: arm CONFIG SECONDS"), 2;
 #endif
   if (ethd_config_load(argv[1], &config, message)) return fail(message);
   if (!config->is_space) return fail("the configuration has no section [space]");

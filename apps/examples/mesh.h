@@ -12,6 +12,7 @@
 #include <embree3/rtcore.h>
 #endif
 #include <ethd/ethd.h>
+#include <math.h>
 #include <stdio.h>
 
 /* m: surfaces that are farther than the nearest by more than this are left out. An effector that slides towards a corner sees
@@ -109,15 +110,20 @@ static inline uint32_t surfaces_near(const mesh *world, ethd_vec3 x, double rang
   return count;
 }
 
+/* Returns false with a line on stderr where a finger would meet nothing, or what is inside. */
 static inline bool load(const char *path, mesh *out) {
   out->file = aiImportFile(path, aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);
   if (!out->file) return fprintf(stderr, "%s: %s\n", path, aiGetErrorString()), false;
-  unsigned triangles = 0;
+  double volume = 0, extent = 0; /* m^3, m from the origin */
   out->scene = rtcNewScene(out->device = rtcNewDevice("threads=1"));
   for (unsigned part = 0; part < out->file->mNumMeshes; part++) {
     const struct aiMesh *m = out->file->mMeshes[part];
     if (!(m->mPrimitiveTypes & aiPrimitiveType_TRIANGLE)) continue; /* what was a quad has another bit as well */
-    triangles += m->mNumFaces;
+    for (unsigned i = 0; i < m->mNumFaces; i++) {
+      const ethd_vec3 a = corner(m, i, 0), b = corner(m, i, 1), c = corner(m, i, 2);
+      volume += ethd_vec3_dot(a, ethd_vec3_cross(b, c)) / 6;
+      extent = fmax(extent, ethd_vec3_norm(a));
+    }
     RTCGeometry g = rtcNewGeometry(out->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     float *v = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, m->mNumVertices);
     unsigned *f = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, m->mNumFaces);
@@ -128,7 +134,9 @@ static inline bool load(const char *path, mesh *out) {
     rtcReleaseGeometry(g);
   }
   rtcCommitScene(out->scene);
-  return triangles > 0 || (fprintf(stderr, "%s: has no triangle\n", path), false);
+  fprintf(stderr, "%s: %.3g m3, up to %.3g m from the origin\n", path, volume, extent);
+  return volume > 0 ||
+         (fprintf(stderr, "%s: no closed mesh, or its triangles are clockwise from outside\n", path), false);
 }
 
 #endif

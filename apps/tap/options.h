@@ -29,9 +29,9 @@ typedef struct ethd__tap_options {
   ethd__gain gains[ETHD_TAP_GAINS];
   size_t gain_count;
   /* with an arm */
-  const char *arm, *plot;        /* NULL: not given */
-  double delay, gap, bias, rate; /* s, NaN: the table's; m; m; Hz */
-  double wall[4];                /* normal and distance; all 0: not given */
+  const char *arm, *plot, *plugin; /* NULL: not given */
+  double delay, gap, bias, rate;   /* s, NaN: the table's; m; m; Hz */
+  double wall[4];                  /* normal and distance; all 0: not given */
 } ethd__tap_options;
 
 /* Reads the command line. Prints --help, or one line and exits 2. */

@@ -174,7 +174,14 @@ ethd_status ethd__reach_open(const ethd__reaches *r, const char *law, ethd__reac
   s->radius = r->gap + ETHD_REACH_FINGER;
   s->speed = r->speed;
   s->acceleration = r->acceleration;
-  ethd_status status = ethd_space_choose(s, "transition", law, ethd_laws, &error);
+  const ethd_law *const *laws = r->laws ? r->laws : ethd_laws;
+  ethd_status status = ethd_space_choose(s, "transition", law, laws, &error);
+  if (status == ETHD_E_UNKNOWN)
+    return ethd__say(
+        message, status,
+        "--transition: %.40s: an unknown name; ethd-check --laws lists the library's laws, --plugin FILE.so "
+        "adds your own",
+        law);
   if (!status && (status = set_gains(r, s, message))) return status;
   if (!status) status = ethd_space_create(s, &out->space, &error);
   if (status) ethd_error_text("--arm", &error, message);

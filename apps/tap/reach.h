@@ -30,7 +30,8 @@ typedef struct ethd__reaches {
   double gap;            /* m, from the finger's front to the plate */
   double rate, bias;     /* of the headset: Hz; m along n: its error, > 0 too deep */
   uint64_t seed;
-  const ethd__gain *gains; /* changes of the setup, "transition.effort", "0.7", except keys that a law lacks */
+  const ethd_law *const *laws; /* that can be chosen, ended by NULL; NULL: the library's */
+  const ethd__gain *gains;     /* changes of the setup, "transition.effort", "0.7", except keys that a law lacks */
   size_t gain_count;
   const ethd__recorded *recorded; /* tap k has movement k modulo their number; NULL: drawn reaches */
   size_t recorded_count;

@@ -7,6 +7,7 @@
 
 #include "cli/cli.h"
 #include "cli/picture.h"
+#include "ethd/plugin.h"
 #include "tap/reach_table.h"
 #include "text/claim.h"
 #include "text/error_text.h"
@@ -65,6 +66,26 @@ static void load_recorded(const ethd__tap_options *arg, ethd__recorded **out, si
   }
   ethd__movements_free(files, *count);
   free(finger);
+}
+
+/* Returns the library's laws and a plugin's, which stay until the program ends. */
+static const ethd_law *const *laws_with(const char *plugin) {
+  const ethd_plugin_entry *own;
+  ethd_error error;
+  char message[ETHD_MESSAGE_MAX];
+  size_t count = 0;
+  if (!plugin) return ethd_laws;
+  const ethd_status status = ethd_plugin_open(plugin, &own, &error);
+  if (status) {
+    ethd_error_text(plugin, &error, message);
+    ethd__fail(ethd__exit_code(status), "--plugin: %s", message);
+  }
+  while (ethd_laws[count]) count++;
+  const ethd_law **all = calloc(count + own->law_count + 1, sizeof *all);
+  if (!all) ethd__fail_memory();
+  memcpy(all, ethd_laws, count * sizeof *all);
+  memcpy(all + count, own->laws, own->law_count * sizeof *all);
+  return all;
 }
 
 /* Refuses causes of failure of the first taps, and a key that no law has. */
@@ -126,7 +147,8 @@ int ethd__reach_main(const ethd__tap_options *arg) {
                            .law_count = arg->laws.count,
                            .speeds = speeds,
                            .speed_count = arg->speeds.count,
-                           .reaches = {.gap = arg->gap,
+                           .reaches = {.laws = laws_with(arg->plugin),
+                                       .gap = arg->gap,
                                        .rate = arg->rate,
                                        .bias = arg->bias,
                                        .seed = arg->seed,

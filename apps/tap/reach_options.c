@@ -2,7 +2,7 @@
 
 #include "tap/options.h"
 
-enum { OPTION_DELAY = 512, OPTION_GAP, OPTION_WALL, OPTION_BIAS, OPTION_RATE, OPTION_PLOT };
+enum { OPTION_DELAY = 512, OPTION_GAP, OPTION_WALL, OPTION_BIAS, OPTION_RATE, OPTION_PLOT, OPTION_PLUGIN };
 
 static const struct argp_option options[] = {
     {"arm", 'a', "TABLE", 0, "tap with a simulated arm in space: ur5e, fr3, iiwa7, planar or a file", 0},
@@ -16,7 +16,9 @@ static const struct argp_option options[] = {
     {"bias", OPTION_BIAS, "M", 0, "distance by which the headset sees the finger too near to the wall, m (0)", 0},
     {"rate", OPTION_RATE, "HZ", 0, "readings of the headset a second (72)", 0},
     {"plot", OPTION_PLOT, "FILE.png", 0,
-     "draw early touches and felt offset against delay, gap and bias; FILE.csv has the numbers", 0},
+     "draw early touches and felt offset against delay, gap and bias, in one to two minutes; FILE.csv has the numbers",
+     0},
+    {"plugin", OPTION_PLUGIN, "FILE.so", 0, "a plugin with laws of your own, for --transition", 0},
     {0},
 };
 
@@ -40,7 +42,7 @@ static void set_wall(const char *text, double number[4]) {
 }
 
 static void check(const struct argp_state *state, const ethd__tap_options *arg, bool any) {
-  if (any && !arg->arm) argp_error(state, "--delay, --gap, --wall, --bias, --rate and --plot need --arm");
+  if (any && !arg->arm) argp_error(state, "--delay, --gap, --wall, --bias, --rate, --plot and --plugin need --arm");
   if (arg->arm && (arg->config || arg->plant || arg->record || arg->paper || arg->validity || arg->learn))
     argp_error(state, "--arm goes without --config, --plant, --record, --paper, --validity and --learn");
 }
@@ -48,7 +50,7 @@ static void check(const struct argp_state *state, const ethd__tap_options *arg, 
 static error_t parse(int key, char *text, struct argp_state *state) {
   static bool any; /* except --arm itself */
   ethd__tap_options *arg = state->input;
-  any |= key >= OPTION_DELAY && key <= OPTION_PLOT;
+  any |= key >= OPTION_DELAY && key <= OPTION_PLUGIN;
   switch (key) {
   case 'a': arg->arm = text; return 0;
   case OPTION_DELAY: arg->delay = ethd__option_number("--delay", text, 0, 0.2); return 0;
@@ -56,6 +58,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_WALL: set_wall(text, arg->wall); return 0;
   case OPTION_BIAS: arg->bias = ethd__option_number("--bias", text, -0.1, 0.1); return 0;
   case OPTION_RATE: arg->rate = ethd__option_number("--rate", text, 1, 1000); return 0;
+  case OPTION_PLUGIN: arg->plugin = text; return 0;
   case OPTION_PLOT: arg->plot = ethd__option_picture("--plot", text); return 0;
   case ARGP_KEY_END: check(state, arg, any); return 0;
   default: return ARGP_ERR_UNKNOWN;
