@@ -42,7 +42,7 @@ session() {
   fi
   wait $session
   code=$?
-  if grep -q -e 'ticks are late' -e "the loop's thread doesn't run" -e 'the application is gone' "$name.err"; then tried="$name: $(tail -n 1 "$name.err")"; return; fi
+  if grep -q -e 'ticks are late' -e "the loop's thread doesn't run" -e 'the application has ended' "$name.err"; then tried="$name: $(tail -n 1 "$name.err")"; return; fi
   [ $code = "$expected" ] || fail "$name: exit $code: $(cat "$name.err")"
   sed -n 3p "$name.out" | grep -q '^dry run  *on the simulated device: up to' || fail "$name: what will be done comes first: $(cat "$name.out")"
   grep -q ',end,closed$' "$name/events.csv" || fail "$name: not closed: $(tail -n 1 "$name/events.csv")"
