@@ -65,6 +65,7 @@ static void set(ethd__session *s, ethd__commands *c, char *rest) {
 static void status(ethd__session *s, ethd__commands *c, char *rest) {
   static ethd_loop_stats stats;
   const ethd__row row = ethd__recorder_latest(&s->recorder);
+  const ethd_fault fault = (ethd_fault)s->front->head(&row).fault;
   const ethd_law *laws[ETHD_TRANSITION + 1];
   char says[256];
   (void)c, (void)rest;
@@ -73,7 +74,7 @@ static void status(ethd__session *s, ethd__commands *c, char *rest) {
   s->front->say(&s->setup, &row, says, sizeof says);
   answer("ok: t %.3f s, %s, %s, %s, %" PRIu64 " overruns, %s", ethd__session_time(s),
          ethd_loop_armed(s->loop) ? "enabled" : "disabled", laws[ETHD_TRANSITION]->id, says, stats.overruns,
-         ethd_fault_sentence(ethd__recorder_fault(&s->recorder)));
+         ethd_fault_sentence(fault));
 }
 
 static bool faulty(ethd__session *s) { return ethd__recorder_fault(&s->recorder) != ETHD_FAULT_NONE; }

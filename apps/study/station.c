@@ -183,13 +183,17 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
 
 /* ---- a device that has stopped itself ---- */
 
+static bool is_clean(const ethd__session *s) {
+  double needed;
+  const double clean = ethd__session_clean_time(s, &needed);
+  return clean >= needed;
+}
+
 /* Somebody has acknowledged the fault; if it persists, it stops the device again. */
 static ethd_status acknowledge(void *self, char message[ETHD_MESSAGE_MAX]) {
   ethd__station *s = self;
-  double until = ethd__session_time(&s->session) + CLEAN, needed;
-  while (ethd__session_clean_time(&s->session, &needed) < needed && ethd__session_time(&s->session) < until &&
-         !ethd__stop)
-    pass(s);
+  double until = ethd__session_time(&s->session) + CLEAN;
+  while (!is_clean(&s->session) && ethd__session_time(&s->session) < until && !ethd__stop) pass(s);
   if (!ethd__session_acknowledge(&s->session)) return ETHD_OK;
   ethd_status status = ethd__session_enable(&s->session);
   return status ? ethd__say(message, status, "enabling the device: %s", ethd_status_sentence(status)) : ETHD_OK;
