@@ -198,10 +198,11 @@ static void end_of_page(int exceeded) { printf("\n%d bound%s exceeded\n", exceed
 
 /* A configuration of space without a device says of it what the bounds need. */
 static void check_space(ethd_config *config) {
-  ethd_device *device = strcmp(config->device, ethd_driver_sim.id) ? reach_device(config) : NULL;
-  if (arg.counts || arg.delay || arg.force || arg.friction || arg.viscous || arg.latency)
+  const bool has_device = strcmp(config->device, ethd_driver_sim.id) != 0;
+  if ((arg.open && !has_device) || arg.counts || arg.delay || arg.force || arg.friction || arg.viscous || arg.latency)
     ethd__fail(ETHD_EXIT_INPUT, "%s: [space] is there; the figures are for the plane, [ability] is for space",
                arg.config);
+  ethd_device *device = has_device ? reach_device(config) : NULL;
   printf("; %s is valid\n\n", arg.config);
   ethd__report_setup(config);
   printf("\n");

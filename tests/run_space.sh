@@ -68,7 +68,7 @@ assert all(len(k[0][name]) == 3 for name in ("x", "v", "xf", "command", "fe")) a
 END
 "${PYTHON:-python3}" "$folder/udp.py" "$folder/port" &
 listener=$!
-while ! [ -s "$folder/port" ]; do sleep 0.05; done
+while ! [ -s "$folder/port" ] && kill -0 $listener; do sleep 0.05; done
 printf 'wait 0.4\ntransition predictive\nstatus\n' | "$run" --config $arm --duration 1 --record "$folder/real" \
   --telemetry "127.0.0.1:$(cat "$folder/port")" >"$folder/real.out" 2>"$folder/real.err" || fail "real run: exit $?: $(cat "$folder/real.err")"
 wait $listener || fail "telemetry isn't what it should be"

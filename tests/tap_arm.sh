@@ -30,6 +30,7 @@ END
   read -r is_far rest <<END
 $(figures "$@" --bias 0.013)
 END
+  case "$is_felt $is_fastest $is_near $is_far" in *[!-+.0-9e\ ]* | *'  '* | ' '* | *' ') fail "no figures: $(cat "$folder/table")" ;; esac
   near=$(echo "$is_near $is_far" | awk -v early="$is_early" '{ print ($1 > $2 ? $1 : $2) - early }')
   echo "$words" "$is_felt" "$is_speed" "$is_fastest" "$is_early" "$near" >"$folder/line"
   read -r felt speed large share bias is_felt is_speed is_fastest is_early near <"$folder/line"
@@ -121,7 +122,7 @@ refuse 'a normal NX,NY,NZ' --arm ur5e --wall 1,0,0
 refuse 'a normal NX,NY,NZ' --arm ur5e --wall 0,0,0,1
 refuse 'a normal NX,NY,NZ' --arm ur5e --wall 1,0,0,1,2
 refuse 'from 0.001 to 0.5' --arm ur5e --gap 0
-refuse 'from 0 to 0.2' --arm ur5e --delay 1
+refuse 'from 0 to 0.1' --arm ur5e --delay 0.2
 refuse 'is the file of --arm, which is only read' --arm "$folder/stretched" --csv "$folder/stretched.arm"
 refuse 'png' --arm ur5e --plot s.pdf
 refuse 'bumpy' --arm ur5e --transition bumpy

@@ -24,6 +24,7 @@ static ethd_ability worst_of(const ethd_device *device) {
     double n[3] = {0, 0, 0};
     n[k / 2] = k % 2 ? -1 : 1;
     const ethd_ability a = ethd_device_able(device, n);
+    if (a.acceleration <= 0) continue; /* no joint moves it that way */
     worst.acceleration = fmin(worst.acceleration, a.acceleration);
     worst.force = fmin(worst.force, a.force);
     worst.mass = fmax(worst.mass, a.mass);

@@ -122,7 +122,7 @@ static ethd_status write_arm(void *device, int64_t now_ns, const ethd_space_comm
   double *before = a->past[a->tick % PAST], *next = a->past[++a->tick % PAST];
   a->held = *asked, a->held.safe |= a->safe;
   a->force ? push_joints(a, next) : move_joints(a, before, next);
-  pass(a, a->past[(a->tick + PAST - (int64_t)rint(a->delay / a->period)) % PAST]);
+  pass(a, a->past[(a->tick + PAST - (int64_t)fmin(PAST - 1, rint(a->delay / a->period))) % PAST]);
   return (void)now_ns, ETHD_OK;
 }
 

@@ -19,7 +19,7 @@ typedef struct ethd__snapshot {
   char message[ETHD_MESSAGE_MAX]; /* why it couldn't be written, else empty */
 } ethd__snapshot;
 
-/* Fails with ETHD_E_MEMORY. Without it no snapshot is taken. */
+/* Fails with ETHD_E_MEMORY. Before it no snapshot is taken. */
 ETHD_MUST_CHECK ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double period,
                                                 const ethd_column *columns, size_t row_bytes);
 

@@ -147,6 +147,8 @@ static bool put_finger(const ethd__reaches *r, double speed, uint64_t k, ethd__a
 /* ---- the rig ---- */
 
 static ethd_status set_gains(const ethd__reaches *r, ethd_space_setup *setup, char *message) {
+  static const char *const fixed[] = {"space.period", "space.command", "space.effector", "space.radius",
+                                      "space.finger_radius"};
   char quote[ETHD_QUOTE_MAX];
   ethd_error error;
   for (size_t i = 0; i < r->gain_count; i++) {
@@ -155,6 +157,9 @@ static ethd_status set_gains(const ethd__reaches *r, ethd_space_setup *setup, ch
     if (!ethd__number(gain->value, strlen(gain->value), &value))
       return ethd__say(message, ETHD_E_SYNTAX, "--set: %s: found %s, a number is allowed", gain->key,
                        ethd__quote(gain->value, strlen(gain->value), quote));
+    for (size_t k = 0; k < sizeof fixed / sizeof *fixed; k++)
+      if (!strcmp(gain->key, fixed[k]))
+        return ethd__say(message, ETHD_E_ARGUMENT, "--set: %s: the arm's table and --gap give it", gain->key);
     const ethd_status status = ethd_space_set(setup, gain->key, value, &error);
     if (!status || status == ETHD_E_UNKNOWN) continue;
     ethd_error_text("--set", &error, message);

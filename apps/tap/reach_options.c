@@ -53,7 +53,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   any |= key >= OPTION_DELAY && key <= OPTION_PLUGIN;
   switch (key) {
   case 'a': arg->arm = text; return 0;
-  case OPTION_DELAY: arg->delay = ethd__option_number("--delay", text, 0, 0.2); return 0;
+  case OPTION_DELAY: arg->delay = ethd__option_number("--delay", text, 0, 0.1); return 0;
   case OPTION_GAP: arg->gap = ethd__option_number("--gap", text, 0.001, 0.5); return 0;
   case OPTION_WALL: set_wall(text, arg->wall); return 0;
   case OPTION_BIAS: arg->bias = ethd__option_number("--bias", text, -0.1, 0.1); return 0;

@@ -36,6 +36,7 @@ void ethd__reach_cells_free(ethd__reach_cell *cells) {
 
 static ethd_status run_cell(const ethd__reach_plan *plan, ethd__reach_cell *cell, char *message) {
   static ethd__reach_rig rig; /* large */
+  cell->count = 0;
   ethd_status status = ethd__reach_open(&plan->reaches, cell->law, &rig, message);
   for (size_t k = 0; !status && k < plan->taps && !ethd__stop; k++) {
     status = ethd__reach_run(&rig, cell->speed->commanded, k, &cell->taps[k], NULL);

@@ -8,7 +8,7 @@
 #define DRAWN 0.1   /* of a joint's speed: limit of the motion towards the posture */
 #define NEAR 1e-14  /* m */
 #define CORRECTIONS 4
-#define HALVINGS 6       /* in the search for the largest share of a rotation */
+#define HALVINGS 14      /* in the search for a largest share, so that joints of small acceleration move, too */
 #define ALMOST_NONE 1e-9 /* rad or m for each m along n: a smaller motion limits nothing */
 
 static uint32_t rows_of(const ethd__arm_table *table) { return table->turn > 0 ? 5 : 3; }

@@ -54,7 +54,7 @@ typedef struct ethd_limits {
   double step_time;      /* s: time budget of one step, > 0 */
   double gap;            /* s: longest time between two steps, and the most that a clock may jump, > 0 */
   double finger_age;     /* s: when the finger's reading is older, tracking fades out */
-  double finger_lost;    /* s: when it is older, the ring is stopped; without both limits the age isn't checked */
+  double finger_lost;    /* s: when it is older, the ring is stopped; the age isn't checked if neither is set */
   double clean_time;     /* s without a reason to stop before an acknowledgement counts, >= 0, finite;
                           longer is stricter */
   double stop_time;      /* s: a stop that lasts longer ends without torque, > 0; INFINITY: ETHD_STOP_TIME */

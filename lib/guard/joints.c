@@ -120,28 +120,30 @@ static void scale(const ethd_joint_limits *limits, const window *w, double most,
   }
 }
 
-/* Goes from v, or from the nearest speeds that are allowed, towards the command by the largest share that every joint's
-   acceleration allows: the arm's velocity stays between the two, and takes no other direction. Returns true if the
-   command isn't reached. */
+/* Goes from v towards the command by the largest share that every joint's acceleration allows: the arm's velocity stays
+   between the two, and takes no other direction. A joint whose own v isn't allowed, since it must brake for its
+   position, is bounded alone and holds up no other. Returns true if the command isn't reached. */
 static bool change(const ethd_joint_limits *limits, const double *q, const double *v, double *command,
                    ethd_joints_ruling *r) {
   window w[ETHD_JOINTS_MAX];
   double from[ETHD_JOINTS_MAX], share = 1;
   ethd_joints_bound bound, by = ETHD_JOINTS_FREE;
   uint32_t joint = 0;
+  bool cut = false;
   for (uint32_t i = 0; i < limits->count; i++) {
     const ethd_joint_limit *j = &limits->joint[i];
     w[i] = speeds(j, j->acceleration, limits->period, q[i], v[i]);
     from[i] = clamp(&w[i], v[i], &bound);
     const double within = clamp(&w[i], command[i], &bound);
     if (bound == ETHD_JOINTS_FREE) continue;
-    const double part = (within - from[i]) / (command[i] - from[i]);
-    if (part >= share) continue;
-    share = part;
+    const double part = from[i] == v[i] ? (within - from[i]) / (command[i] - from[i]) : 1;
+    cut = true;
+    if (by != ETHD_JOINTS_FREE && part >= share) continue;
+    share = fmin(part, share);
     joint = i;
     by = bound;
   }
-  if (!(share < 1)) return false;
+  if (!cut) return false;
   note(r, joint, by);
   for (uint32_t i = 0; i < limits->count; i++)
     command[i] = clamp(&w[i], from[i] + share * (command[i] - from[i]), &bound);

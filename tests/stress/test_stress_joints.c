@@ -162,6 +162,23 @@ TEST(test_change_keeps_its_direction) {
   }
 }
 
+/* A joint on its way to a stop at its bound doesn't keep the others from braking, or from turning back. */
+TEST(test_braking_joint_holds_up_no_other) {
+  const ethd_joint_limit ends = {-INFINITY, 0, INFINITY, 1, INFINITY, 0},
+                         open = {-INFINITY, INFINITY, INFINITY, 1, INFINITY, 0};
+  ethd_joint_limits l = {.count = 2, .period = 0.01, .joint = {ends, open}};
+  double way = 0;
+  for (double u = 0.49; u > 0; u -= 0.01) way += 0.01 * u;
+  l.joint[0].most = way;
+  for (int k = 0; k < 2; k++) {
+    const double q[2] = {0, 0}, v[2] = {0.5, 0.5};
+    double command[2] = {0, k ? -0.5 : 0};
+    (void)ethd_guard_joints(&l, q, v, command);
+    ck_assert_double_eq_tol(command[0], 0.49, 1e-12);
+    ck_assert_double_eq_tol(command[1], 0.49, 1e-12);
+  }
+}
+
 /* A joint at its bound stands, with the whole arm, when it is asked to go on, and leaves when it is asked to. */
 TEST(test_resting_at_the_bound) {
   const ethd_joint_limit joint = {-1, 1, 2, 10, 100, 0};

@@ -145,6 +145,20 @@ TEST(test_turn) {
   ck_assert_double_le(apart(m.tool.x, from), 1e-12);
 }
 
+/* A plate that turns one way comes round when its normal jumps to the other side, on an arm of small accelerations too. */
+TEST_LOOP(test_turn_back, 0, 3) {
+  begin(arm_names[_i], NULL);
+  const ethd_vec3 from = m.tool.x, f = m.tool.facing;
+  const double angle = 0.5, there[3] = {f.x * cos(angle) + f.z * sin(angle), f.y, f.z * cos(angle) - f.x * sin(angle)};
+  const double back[3] = {f.x * cos(angle) - f.z * sin(angle), f.y, f.z * cos(angle) + f.x * sin(angle)};
+  const int second = (int)(1 / table.limits.period);
+  for (int k = 0; k < second / 2; k++) (void)ethd__arm_motion_step(&m, (ethd_vec3){0, 0, 0}, there);
+  ck_assert_double_le(apart(m.tool.facing, ethd_vec3_of(there)), 0.3);
+  for (int k = 0; k < 4 * second; k++) (void)ethd__arm_motion_step(&m, (ethd_vec3){0, 0, 0}, back);
+  ck_assert_double_le(apart(m.tool.facing, ethd_vec3_of(back)), 1e-2);
+  ck_assert_double_le(apart(m.tool.x, from), 1e-3);
+}
+
 /* A stop takes v / a of the joint that needs longest, ends at rest, and doesn't leave the line that the tool is on but by
    its joints' turn on it. */
 TEST(test_stop) {
