@@ -83,5 +83,5 @@ says "$folder/blind" '^device: no sensor measures the finger, so the effector st
 "$BUILD/bin/ethd-tap" --config $arm >"$folder/out" 2>&1 && fail "ethd-tap takes [space]"
 says "$folder/out" 'ur5e.ini: \[space\] is for a device in space, and this program works in the plane'
 "$BUILD/bin/ethd-conform" --config $arm --virtual --move >"$folder/conform" 2>&1 || fail "conform: $(cat "$folder/conform")"
-[ "$(grep -c ' kept ' "$folder/conform")" = 7 ] || fail "conform: $(cat "$folder/conform")"
+[ "$(grep -c ' kept ' "$folder/conform")" = 8 ] || fail "conform: $(cat "$folder/conform")"
 exit $failed

@@ -42,7 +42,7 @@ typedef struct ethd_conform_def {
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_conform(const ethd_conform_def *def,
                                                   ethd_conform_answer answers[ETHD_QUESTIONS]);
 
-#define ETHD_SPACE_QUESTIONS 7
+#define ETHD_SPACE_QUESTIONS 8
 
 /* Asks a device in space (def->device->space). It is pushed by `torque`, m/s or N by the setup's kind, and by no more
    than the setup's limit. Returns as ethd_conform does (ETHD_E_...). [main] */

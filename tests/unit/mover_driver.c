@@ -5,7 +5,7 @@
 #include <string.h>
 
 mover_device mover_device_at(ethd_vec3 at, int late) {
-  mover_device d = {.at = at, .late = late, .period = 1e-3, .finger_at = at, .speed = INFINITY};
+  mover_device d = {.at = at, .late = late, .period = 1e-3, .finger_at = at, .speed = INFINITY, .travel = INFINITY};
   d.fail_read = d.fail_write = d.stale_from = d.stale_until = -1;
   for (int i = 0; i <= LATE_MAX; i++) d.past[i] = at;
   return d;
@@ -53,6 +53,11 @@ static ethd_status mover_device_write(void *device, int64_t now_ns, const ethd_s
   const double speed = ethd_vec3_norm(d->v);
   d->cut = speed > d->speed;
   if (d->cut) d->v = ethd_vec3_scale(d->speed / speed, d->v);
+  const ethd_vec3 to = ethd_vec3_add(d->at, ethd_vec3_scale(d->period, d->v));
+  if (fmax(fabs(to.x), fmax(fabs(to.y), fabs(to.z))) > d->travel) {
+    d->v = (ethd_vec3){0, 0, 0};
+    d->cut = true;
+  }
   d->at = ethd_vec3_add(d->at, ethd_vec3_scale(d->period, d->v));
   memmove(d->past + 1, d->past, sizeof d->past - sizeof *d->past);
   d->past[0] = d->at;

@@ -19,6 +19,7 @@ typedef struct mover_device {
   int64_t faults;              /* that every read reports */
   bool is_safe;                /* whatever is written */
   double speed;                /* m/s: the device cuts a faster command, and says so; INFINITY: it takes all */
+  double travel;               /* m from the origin along each axis: it stops there, and says so */
   bool cut;                    /* it has cut the last one */
   ethd_space_command written[MOVES_MAX];
 } mover_device;
