@@ -61,7 +61,7 @@ fi
 
 # The pictures: of these scripts and these ticks, which are the same everywhere; their pixels depend on gnuplot and its fonts.
 taps=42a6338649e1bebc194926756e0336404236a2839d28dd79638cd85aaecf8729
-arm=726cb1b0088f385de58a21f85cf030abf081f9bcdef4165554c2ba3486952a73
+arm=cf851ee64961e3fa842cccb6916dd9706e2c31a43d2998a3eb1db4856a0ce277
 "$BUILD/bin/ethd-tap" --taps 400 --transition smooth,offset,predictive --speed high --trace "$work/taps" >/dev/null
 "$BUILD/bin/ethd-tap" --arm ur5e --transition approach --trace "$work/arm" >/dev/null
 drawn() { [ "$(cat apps/plot/$1.gp "$work/$1"/*.csv apps/plot/$1.png | sha256sum)" = "$2  -" ]; }

@@ -42,8 +42,8 @@ END
 }
 # Drawn reaches of this seed: no setting was chosen on them.
 for delay in 0.008 0.030; do goals 'held held held held held' "$delay" --seed 20260702 --taps 60; done
-# Free reaches of 11 people: the table's accelerations were chosen with one reach of each of the two others at hand. People
-# slow down later than a drawn reach, so at 60 mm not all goals are reached; at 100 mm they are.
+# Free reaches of 11 people: the headway was chosen on the reaches of the two others at hand, the table's accelerations with
+# one of each. People slow down later than a drawn reach, so at 60 mm a bias costs more; at 100 mm all goals are reached.
 people=${ETHD_MOTION_DIR:-../shared/motion}/avraham_free_mit
 mkdir "$folder/people"
 for file in "$people"/*_free.csv; do
@@ -52,8 +52,8 @@ done
 if [ -n "${SAN:-}" ]; then
   :
 elif [ "$(ls "$folder/people" | wc -l)" = 99 ]; then
-  goals 'held held missed held missed' 0.008 --finger "$folder/people"
-  goals 'held held held missed missed' 0.030 --finger "$folder/people"
+  goals 'held held held held missed' 0.008 --finger "$folder/people"
+  goals 'held held held held missed' 0.030 --finger "$folder/people"
   for delay in 0.008 0.030; do goals 'held held held held held' "$delay" --gap 0.1 --finger "$folder/people"; done
 else
   echo "recorded people are left out: $people doesn't hold the reaches of 11 people"

@@ -1,13 +1,14 @@
 /* Your own driver, for an arm whose dynamics MuJoCo works out: any model with motors at two to seven joints, a posture as its
    first key and a site `plate`, whose z points from the hand into the plate, such as ur5e.xml. It takes forces, or velocities,
-   which a servo of the joints follows by computed torques (Luh, Walker and Paul 1980). As a shared object it is a driver for
-   every program: [device] driver = file:mujoco_arm.so, camera, and its key model = ur5e.xml. First build it:
+   which a servo of the joints follows by computed torques (Luh, Walker and Paul 1980). Configuration: driver =
+   file:mujoco_arm.so, camera; mujoco_arm.model = ur5e.xml. First build it:
      cc -shared -fPIC mujoco_arm.c $(pkg-config --cflags ethd-drivers) -lmujoco -o mujoco_arm.so */
 #include <ethd/driver.h>
 #include <math.h>
 #include <mujoco/mujoco.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { ROWS = 6, JOINTS = ETHD_JOINTS_MAX, PAST = 256 };
 #define SPEED 3.14      /* rad/s, of each joint at most */
@@ -163,8 +164,8 @@ static ethd_status open_arm(const ethd_device_def *def, void **device, char mess
   if (file) snprintf(path, sizeof path, "%s/%s", *file->value == '/' ? "" : def->folder, file->value);
   const mjModel *m = a->model = file ? mj_loadXML(path, NULL, why, sizeof why) : NULL;
   a->plate = m ? mj_name2id(m, mjOBJ_SITE, "plate") : -1, a->n = m ? m->nv : 0;
-  if (m && (a->plate < 0 || a->n < 2 || a->n > JOINTS || a->n != m->nu || m->nkey < 1))
-    snprintf(why, sizeof why, "model: a site `plate`, a key, and a motor at each of 2 to 7 joints are needed");
+  if (m && (a->plate < 0 || a->n < 2 || a->n > JOINTS || a->n != m->nu || !m->nkey || memchr(m->jnt_limited, 0, a->n)))
+    snprintf(why, sizeof why, "model: a site `plate`, a key, and 2 to 7 joints with a motor and a range are needed");
   if (*why) return snprintf(message, ETHD_MESSAGE_MAX, "%.400s", why), ETHD_E_FILE;
   a->period = def->space->period, a->force = def->space->kind == ETHD_SPACE_FORCE;
   a->limits = (ethd_joint_limits){.count = (uint32_t)a->n, .kind = ETHD_JOINTS_SPEED, .period = a->period};
@@ -176,8 +177,7 @@ static ethd_status open_arm(const ethd_device_def *def, void **device, char mess
 
 static void close_arm(void *device) {
   mujoco_arm *a = device;
-  mj_deleteData(a->real), mj_deleteData(a->told), mj_deleteModel(a->model);
-  free(a);
+  mj_deleteData(a->real), mj_deleteData(a->told), mj_deleteModel(a->model), free(a);
 }
 
 const ethd_driver ethd_driver_plugin = {

@@ -109,7 +109,6 @@ static void draw(const ethd__tap_options *arg, const ethd__reach_plan *plan) {
   const ethd__reaches *r = &plan->reaches;
   char message[ETHD_MESSAGE_MAX], title[160], base[96], laws[ETHD_TAP_WORDS * 34] = "";
   char *table = ethd__picture_table(arg->plot);
-  ethd__refuse_same("--plot", table, "--csv", arg->csv);
   check_job(ethd__reach_sweep(plan, arg->arm, table, message), message);
   snprintf(title, sizeof title, "%s, simulated: %zu taps at %s m/s a point", arg->arm, plan->taps, plan->speeds->word);
   snprintf(base, sizeof base, "%.6g %.6g %.6g", 1e3 * r->table.servo.delay, 1e3 * r->gap, 1e3 * r->bias);
@@ -158,6 +157,11 @@ int ethd__reach_main(const ethd__tap_options *arg) {
   if (!speeds) ethd__fail_memory();
   check(ethd__arm_table_load(path, path, &r->table, message), message);
   refuse_input(arg, "--arm", path);
+  if (arg->plot) {
+    char *picture = ethd__picture_table(arg->plot);
+    ethd__refuse_same("--plot", picture, "--csv", arg->csv);
+    free(picture);
+  }
   if (!isnan(arg->delay)) r->table.servo.delay = arg->delay;
   put_wall(arg, r);
   check(ethd__reaches_prepare(r, path, message), message);

@@ -2,7 +2,8 @@
    positions and speeds here are commanded ones, and q += T dq.
 
      task: v, and where a plate faces  --->  dq = J^+ task + free part of pull (posture - q)
-                                             ---> guard: each joint's place, speed, acceleration
+                                             ---> guard: each joint's place, speed, acceleration; if one binds, the
+                                                  point's velocity comes first, then rotation and posture
                                              ---> the point goes where v, as the guard left it, says: no drift
                                              ---> guard
 
@@ -28,7 +29,8 @@ typedef struct ethd__arm_motion {
 /* Puts the arm to rest at q, rad, within its limits; NULL: its posture. */
 void ethd__arm_motion_start(const ethd__arm_table *table, const double *q, ethd__arm_motion *out) ETHD_RT;
 
-/* Moves by one period towards v, m/s; a plate rotates towards `normal`, a unit vector, or keeps its direction: NULL. */
+/* Moves by one period towards v, m/s; a plate rotates towards `normal`, a unit vector, or keeps its direction: NULL.
+   Returns the guard's first ruling, which may concern rotation or posture alone. */
 ethd_joints_ruling ethd__arm_motion_step(ethd__arm_motion *m, ethd_vec3 v, const double *normal) ETHD_RT;
 
 /* Moves by one period and slows down, all joints in proportion, as quickly as the slowest joint allows: the tool stays

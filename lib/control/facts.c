@@ -71,4 +71,5 @@ void ethd__facts(const ethd__tick *t, const ethd_contact *c, ethd_facts *out) {
   out->finger_a = finger_acceleration(t, n);
   out->memory = t->state->core.memory;
   out->acceleration = (double)NAN;
+  out->room = setup->ring_radius - setup->finger_radius;
 }

@@ -119,6 +119,7 @@ static void facts(const void *front, const ethd_contact *contact, ethd_facts *ou
   out->finger_age = given || state->filter.started ? 0 : (double)NAN;
   out->finger_a = (double)NAN;
   out->memory = t->state->core.memory;
+  out->room = t->plan->setup.effector == ETHD_EFFECTOR_PLATE ? (double)INFINITY : out->ring_radius - out->finger_radius;
   out->acceleration = by_velocity ? fmin(a->acceleration, t->plan->setup.acceleration) : a->acceleration;
 }
 

@@ -12,6 +12,7 @@
 enum { TAPS = 40 };
 
 static ethd__reach_plan plan;
+static const ethd__gain *gains; /* one, or none */
 static ethd__speed speed = {.word = "0.4", .commanded = 0.4};
 
 static void describe(double delay, double gap, double bias, uint64_t seed) {
@@ -21,7 +22,7 @@ static void describe(double delay, double gap, double bias, uint64_t seed) {
   const ethd_vec3 aslant = {0.9, 0.35, -0.25};
   ethd__tool tool;
   plan = (ethd__reach_plan){.laws = laws, .law_count = 1, .speeds = &speed, .speed_count = 1, .taps = TAPS};
-  *r = (ethd__reaches){.gap = gap, .rate = 72, .bias = bias, .seed = seed};
+  *r = (ethd__reaches){.gap = gap, .rate = 72, .bias = bias, .seed = seed, .gains = gains, .gain_count = gains != NULL};
   arm_table("ur5e", "", &r->table);
   r->table.servo.delay = delay;
   ethd__linkage_place(&r->table.linkage, r->table.posture, &tool);
@@ -61,9 +62,15 @@ TEST_LOOP(test_goals, 0, 4) {
   }
 }
 
-/* gap >= v t_d + v^2 / (2 a) is needed: with less nearly every touch is early, whoever reaches. */
+/* gap >= v t_d + v^2 / (2 a) is needed, unless the plate goes ahead by a headway: with less nearly every touch is early,
+   whoever reaches. */
 TEST(test_gap_is_needed) {
+  static const ethd__gain none = {"transition.headway", "0"};
+  const ethd__reach_figures ahead = all(0.008, 0.012, 0, 1);
+  ck_assert_double_le(ahead.early_share, 0.25);
+  gains = &none;
   const ethd__reach_figures f = all(0.008, 0.012, 0, 1);
+  gains = NULL;
   const double late = 0.008 + 2 / 150.0, a = plan.reaches.acceleration;
   ck_assert_double_ge(0.4 * late + 0.4 * 0.4 / (2 * a), 0.012);
   ck_assert_double_ge(f.early_share, 0.9);

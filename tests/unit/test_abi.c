@@ -48,7 +48,7 @@ AT(ethd_contact, object, 112, 4);
 AT(ethd_contact, body, 116, 4);
 AT(ethd_contact, facts, 120, 8);
 
-SIZE(ethd_facts, 104, 8);
+SIZE(ethd_facts, 112, 8);
 AT(ethd_facts, mass, 0, 8);
 AT(ethd_facts, force, 8, 8);
 AT(ethd_facts, applied, 16, 8);
@@ -62,6 +62,7 @@ AT(ethd_facts, finger_age, 72, 8);
 AT(ethd_facts, finger_a, 80, 8);
 AT(ethd_facts, memory, 88, 8);
 AT(ethd_facts, acceleration, 96, 8);
+AT(ethd_facts, room, 104, 8);
 
 SIZE(ethd_past, 48, 8);
 AT(ethd_past, offset, 0, 8);
