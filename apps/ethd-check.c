@@ -22,12 +22,12 @@ static const char doc[] =
     "the device too, and enables nothing. Figures come from the drivers and from [arm]; an option replaces them. If "
     "the delay is unknown, the worst case is assumed and printed: the longest spacing of samples that the limits "
     "allow, or with --open the longest one measured. Stability includes an elastic transmission but no friction, since "
-    "friction stops only small oscillations. Where a loop is unstable without friction, a line gives the speed up to "
-    "which friction stops an oscillation, and the speed that one encoder count gives the motors; if the second speed "
-    "is larger, the ring chatters for ever. A plugin's law that doesn't name its gains isn't judged; the last lines "
-    "say so. For a configuration of space ([space]) it prints the setup, and the distance that the device needs to "
-    "react "
-    "before a wall.\n\n"
+    "friction stops only small oscillations. For a loop that is unstable without friction, two speeds are printed: up "
+    "to "
+    "the first, friction stops an oscillation; one encoder count moves the motors with the second. If the second is "
+    "larger, the ring goes on chattering. A plugin's law that doesn't name its gains isn't judged; the last lines "
+    "say so. For a configuration of space ([space]) it prints the setup, and the distance in which "
+    "the device reacts before a wall.\n\n"
     "--laws and --drivers list the laws, methods and drivers that a configuration can name, with each parameter's "
     "unit, range and default. The first law or method of each kind is the default; for transitions it is offset.\n\n"
     "The exit code is 0 for a valid configuration, whether bounds are exceeded or not, and 2, with one line, for an "
@@ -206,7 +206,11 @@ static void check_space(ethd_config *config) {
   printf("; %s is valid\n\n", arg.config);
   ethd__report_setup(config);
   printf("\n");
-  if (device) ethd__report_drivers(config, device, arg.open);
+  if (device) {
+    const ethd_limits limits = ethd_device_limits(device);
+    ethd_space_narrow(&config->space, &limits);
+    ethd__report_drivers(config, device, arg.open);
+  }
   end_of_page(ethd__report_space(&config->space, device));
   ethd_device_close(device);
   ethd_config_free(config);

@@ -11,7 +11,7 @@ page '^effector      = plate'
 page '^file          = room.solids ; 4 objects, 1 material$'
 # t_d = 8 + 1 ms, a = 0.8 * 10 m/s^2, gap = 60 mm: 0.4 t_d + 0.16 / (2 a) = 13.6 mm; v* = 8 (sqrt(t_d^2 + 0.12 / 8) - t_d)
 page 't_d  *9 ms: delay of \[ability\], and the period 1 ms'
-page 'at 0.2 m/s  *4.300 mm of the gap, 60.000 mm: the effector stands when the finger arrives'
+page 'at 0.2 m/s  *4.300 mm of the gap of 60.000 mm: the effector stands when the finger arrives'
 page 'at 0.4 m/s  *13.600 mm of the gap'
 page 'highest speed  *0.910 m/s'
 page 'headway  *0.15 s: .* at 0.4 m/s by 60 mm$'
@@ -29,7 +29,7 @@ page 't_d  *23.33 ms: delay of the device, and the period 2 ms'
 page "a  *9.6 m/s^2: the law's share of the least that"
 sed 's/^radius .*/radius = 0.0185/; s/^delay.*/delay = 0.03/; s/^speed.*/speed = 5/' $ini >"$folder/short.ini"
 "$bin/ethd-check" "$folder/short.ini" >"$folder/page" || fail "a short gap: $(cat "$folder/page")"
-page 'at 0.4 m/s  *22.400 mm of the gap, 10.500 mm: the finger arrives before the effector stands'
+page 'at 0.4 m/s  *22.400 mm of the gap of 10.500 mm: the finger arrives before the effector stands'
 page 'space.speed is higher'
 page '^2 bounds exceeded$'
 

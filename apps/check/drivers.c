@@ -34,22 +34,29 @@ static void space_figures(const ethd_device *device) {
     printf("%-12s %-32s %.4g %s\n", head, all[i].name, all[i].value, strcmp(all[i].unit, "1") ? all[i].unit : "");
 }
 
+static void unseen(double age, double lost) {
+  limit("\n             a finger unseen: tracking fades after", age, "ms", 1e3);
+  limit(", it stops after", lost, "ms", 1e3);
+  printf("\n");
+}
+
 void ethd__report_drivers(const ethd_config *config, ethd_device *device, bool is_open) {
   const ethd_limits *l = &config->setup.limits;
+  const ethd_space_setup *s = &config->space;
   const char *remark;
   printf("drivers      %s: %s\n", config->device,
          is_open ? "opened, nothing enabled" : "read, not touched (--open asks the device)");
   for (uint32_t i = 0; (remark = ethd_device_remark(device, i)); i++) printf("             %s\n", remark);
   if (config->is_space) {
     space_figures(device);
+    limit("limits       speed", s->speed, "m/s", 1);
+    limit(", gap between samples", s->gap, "ms", 1e3);
+    unseen(s->finger_age, s->finger_lost);
     return;
   }
   if (is_open) joints(config, device);
   limit("limits       torque", l->torque, "Nm", 1);
   limit(", speed", l->speed, "m/s", 1);
   limit(", gap between samples", l->gap, "ms", 1e3);
-  printf("\n             ");
-  limit("a finger unseen: tracking fades after", l->finger_age, "ms", 1e3);
-  limit(", it stops after", l->finger_lost, "ms", 1e3);
-  printf("\n");
+  unseen(l->finger_age, l->finger_lost);
 }

@@ -73,7 +73,7 @@ int ethd__report_space(const ethd_space_setup *s, const ethd_device *device) {
          device ? ": the law's share of the least that setup and device allow along x, y and z" : "");
   for (int i = 0; i < 2; i++) {
     const double need = distance(&r, speeds[i]);
-    printf("  at %.1f m/s             %.3f mm of the gap, %.3f mm: %s\n", speeds[i], 1e3 * need, 1e3 * r.gap,
+    printf("  at %.1f m/s             %.3f mm of the gap of %.3f mm: %s\n", speeds[i], 1e3 * need, 1e3 * r.gap,
            need > r.gap ? "the finger arrives before the effector stands; a larger space.radius leaves it time"
                         : "the effector stands when the finger arrives");
     exceeded += need > r.gap;

@@ -103,8 +103,9 @@ static void say_held(const looked_at *l) {
 /* Only a damper or friction can compensate the energy of the hold. */
 static int undamped(const looked_at *l) {
   double needed = ethd__sampled_damping_needed(&l->loop), b = l->device->viscous;
-  printf("  %-20s has no damping: the hold takes K (T (n + 1/2) + t_d) = %.4g Ns/m, for friction to give; ", l->what,
-         needed);
+  printf("  %-20s has no damping; sampling and delay act as the negative damping K (T (n + 1/2) + t_d) = %.4g Ns/m, "
+         "and viscous friction must be as large; ",
+         l->what, needed);
   if (isnan(b))
     printf("give --viscous\n");
   else if (b >= needed)

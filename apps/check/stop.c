@@ -66,9 +66,10 @@ static void braking(const ethd__subject *s, int axis, double damping) {
 static void creep(const ethd_setup *setup, double damping) {
   int capped =
       isfinite(ethd_setup_get(setup, "transition.eps_max")) || isfinite(ethd_setup_get(setup, "transition.t_max"));
-  printf("  creep                  a push over B_d v_th = %.3g N goes on braking, at F/B_d, %s\n",
-         damping * ethd_setup_get(setup, "transition.v_th"),
-         capped ? "until transition.eps_max or t_max" : "for ever: transition.eps_max and t_max would end it");
+  printf(
+      "  creep                  a finger that pushes with F > B_d v_th = %.3g N moves the braking ring at F/B_d %s\n",
+      damping * ethd_setup_get(setup, "transition.v_th"),
+      capped ? "until transition.eps_max or t_max" : "for ever: transition.eps_max and t_max would end it");
 }
 
 /* Compares the law's range before the wall with the distance of a stop. */

@@ -55,9 +55,7 @@ int main(int argc, char **argv) {
                                .space = setup};
   if (ethd_device_open(config->device, NULL, &def, &device, message)) return fail(message);
   const ethd_limits limits = ethd_device_limits(device);
-  setup->gap = fmin(setup->gap, limits.gap);
-  setup->finger_age = fmin(setup->finger_age, limits.finger_age);
-  setup->finger_lost = fmin(setup->finger_lost, limits.finger_lost);
+  ethd_space_narrow(setup, &limits);
   if (ethd_space_create(setup, &space, &error)) return ethd_error_text(argv[1], &error, message), fail(message);
   ethd_loop_def with = ethd_loop_default();
   with.device = device, with.space = space, with.period = setup->period, with.gap = setup->gap;

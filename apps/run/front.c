@@ -74,10 +74,7 @@ static const ethd__session_front plane = {
 
 static void merge_space(const ethd_device *device, ethd__setup_copy *out) {
   const ethd_limits limits = ethd_device_limits(device);
-  ethd_space_setup *setup = &out->space;
-  setup->gap = fmin(setup->gap, limits.gap);
-  setup->finger_age = fmin(setup->finger_age, limits.finger_age);
-  setup->finger_lost = fmin(setup->finger_lost, limits.finger_lost);
+  ethd_space_narrow(&out->space, &limits);
 }
 
 /* The controller itself skips surfaces that are too far away. */

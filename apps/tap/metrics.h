@@ -46,8 +46,8 @@ typedef struct ethd__rule {
   ethd__validity validity;
   bool carried; /* a device's tap: the hand's path isn't known, so the finger's speed before the touch is used */
   double graze; /* s: a tap whose pad touches for less in all is grazing; 0: none */
-  bool single;  /* a finger that leaves the wall by `lift` after its touch and comes back makes a */
-  double lift;  /* m: double tap */
+  bool single;  /* double taps don't count */
+  double lift;  /* m: a finger that leaves the wall by this after its touch and comes back makes a double tap */
 } ethd__rule;
 
 /* Finds t_r/vo tick by tick. Initially all zero; gets every tick in order. */

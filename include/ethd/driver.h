@@ -107,7 +107,7 @@ struct ethd_driver {
   void (*safe)(void *device) ETHD_RT;
   ethd_status (*stop)(void *device); /* NULL: safe is enough */
   void (*close)(void *device);
-  ethd_limits (*limits)(const void *device);
+  ethd_limits (*limits)(const void *device); /* in space those that ethd_space_narrow takes */
   /* Writes at most `max` figures about the time since the start and returns how many. [main], also while it runs. */
   uint32_t (*figures)(const void *device, ethd_figure *out, uint32_t max);
   /* Returns the i-th sentence about the device for the user, such as a remaining risk; NULL after the last. [main] */

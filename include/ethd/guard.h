@@ -10,8 +10,8 @@
    oscillate up to b r / m = 1/e, and is stable up to pi/2, 4.3 times as much (Hale and Verduyn Lunel, Introduction to
    Functional Differential Equations, 1993, 5.2). ethd-check prints the margin of the sampled loop.
 
-   The stop checks whether the device brakes. The commanded change of speed may exceed 1.2 times the measured fall by a
-   tenth of the speed at the start of the stop. So a device with a reversed encoder, or with more delay than stated,
+   The stop checks whether the device brakes. During a stop the commanded change of speed is at most 1.2 times
+   the measured decrease of speed plus a tenth of the speed at the start. So a device with a reversed encoder, or with more delay than stated,
    becomes faster by a tenth at most, and by three tenths if its mass is a third of the stated mass. The stop has no
    measurable effect until t_d + lag have passed, so the fall counts from the highest speed until then. A torque counts
    as held for as long as the last one was. A fall by friction counts, too: with a reversed encoder, a mass stated three

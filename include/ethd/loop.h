@@ -142,8 +142,8 @@ typedef struct ethd_loop_row {
 } ethd_loop_row;
 
 /* One tick in space. The sense's ability is the device's along the normal of the surface nearest to the sense's x,
-   unless the driver's read gave one. Its `commanded` is the written command, if only a share of the command was
-   written, unless the driver's read gave one. */
+   unless the driver's read gave one. During a soft start only a share of the command is written; then
+   `commanded` is that share, unless the driver's read gave it. */
 typedef struct ethd_space_row {
   ethd_space_trace trace;
   double share;

@@ -73,8 +73,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
      lost        detail: the number of ticks missing before this row, which therefore can't be replayed
      thinned     detail: the rule. tick.npy holds only some of the ticks, so the recording can't be replayed
      end         the last event: the recording was closed, and its row is the number of its ticks
-   The events of a row make one setup. If setup or start is among them, a new controller starts with it, else it was
-   posted as a whole to the running one. The first row always has a new controller. ETHD_E_FILE. */
+   The events of a row make one setup. If setup or start is among them, a new controller starts with it; otherwise
+   the setup was posted as a whole to the running one. The first row always has a new controller. ETHD_E_FILE. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_event(ethd_recording *recording, const char *kind,
                                                           const char *detail);
 

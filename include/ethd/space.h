@@ -231,6 +231,11 @@ ETHD_API void ethd_space_transition(ethd_space_setup *setup, const ethd_transiti
    and the statuses of ethd_law_check. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_space_check(const ethd_space_setup *setup, ethd_error *error);
 
+/* Takes a device's limits that are stricter than the setup's: speed, workspace (x and y), energy, step_time, gap,
+   finger_age, finger_lost, clean_time and stop_time. Those of joints and torques the device keeps itself
+   (ethd_guard_joints). [any] */
+ETHD_API void ethd_space_narrow(ethd_space_setup *setup, const ethd_limits *limits);
+
 /* ---- a setup by names, as a configuration has them ---- */
 
 #define ETHD_SPACE_PARTS 4

@@ -62,6 +62,22 @@ void ethd_space_setup_fill(ethd_space_setup *setup, uint32_t bytes) {
   setup->ability = ethd_ability_unknown();
 }
 
+void ethd_space_narrow(ethd_space_setup *s, const ethd_limits *limits) {
+  if (limits->size != sizeof *limits) return;
+  s->speed = fmin(s->speed, limits->speed);
+  s->x_min = fmax(s->x_min, limits->workspace[0]);
+  s->x_max = fmin(s->x_max, limits->workspace[1]);
+  s->y_min = fmax(s->y_min, limits->workspace[2]);
+  s->y_max = fmin(s->y_max, limits->workspace[3]);
+  s->energy = fmin(s->energy, limits->energy);
+  s->step_time = fmin(s->step_time, limits->step_time);
+  s->gap = fmin(s->gap, limits->gap);
+  s->finger_age = fmin(s->finger_age, limits->finger_age);
+  s->finger_lost = fmin(s->finger_lost, limits->finger_lost);
+  s->clean_time = fmax(s->clean_time, limits->clean_time);
+  s->stop_time = fmin(s->stop_time, limits->stop_time);
+}
+
 /* ---- checks ---- */
 
 static ethd_status check_numbers(const ethd_space_setup *s, ethd_error *error) {

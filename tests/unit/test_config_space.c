@@ -194,6 +194,23 @@ TEST(test_solids_file) {
   ck_assert_int_eq(rmdir(folder), 0);
 }
 
+/* A device's limits, where they are stricter than the setup's. */
+TEST(test_narrow) {
+  ethd_space_setup s = ethd_space_setup_default(), unchanged;
+  ethd_limits l = ethd_limits_none();
+  s.speed = 1, s.x_min = -0.5, s.y_max = 0.3, s.clean_time = 0.2, s.stop_time = 0.05;
+  unchanged = s;
+  ethd_space_narrow(&s, &l);
+  ck_assert_mem_eq(&s, &unchanged, sizeof s);
+  l.speed = 0.4, l.clean_time = 0.1, l.stop_time = 0.2, l.energy = 0.01, l.step_time = 1e-4;
+  l.gap = 0.003, l.finger_age = 0.02, l.finger_lost = 0.1;
+  memcpy(l.workspace, (double[]){-0.4, 0.6, -0.2, 0.5}, sizeof l.workspace);
+  ethd_space_narrow(&s, &l);
+  ck_assert(s.speed == 0.4 && s.energy == 0.01 && s.step_time == 1e-4 && s.gap == 0.003);
+  ck_assert(s.finger_age == 0.02 && s.finger_lost == 0.1 && s.clean_time == 0.2 && s.stop_time == 0.05);
+  ck_assert(s.x_min == -0.4 && s.x_max == 0.6 && s.y_min == -0.2 && s.y_max == 0.3 && isinf(s.z_min));
+}
+
 /* ---- the example ---- */
 
 TEST(test_example) {
