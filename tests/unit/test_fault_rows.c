@@ -86,16 +86,17 @@ TEST(test_unknown_bits) {
   rig_close(&r);
 }
 
-/* Zero at once, whatever the rate limit. */
-TEST(test_zero_is_quicker_than_the_rate_limit) {
+/* Zero at once, whatever the rate limit: after a fault of the device, and of a law. */
+TEST_LOOP(test_zero_is_quicker_than_the_rate_limit, 0, 2) {
   rig r;
   moody_open(&r, 1);
   r.setup.limits.torque_rate = 1;
   rig_post(&r);
   for (int i = 0; i < 100; i++) with(&r, moody_sense(&r), 0, 0);
   ck_assert_double_gt(fabs(r.command.torque[0]), 0.05);
-  with(&r, moody_sense(&r), ETHD_FAULT_BIT(ETHD_FAULT_DRIVE), 0);
-  moody_expect_safe(&r, ETHD_E_DEVICE, ETHD_FAULT_DRIVE);
+  mood.contact = _i ? MOODY_FAIL : MOODY_WELL;
+  with(&r, moody_sense(&r), _i ? 0 : ETHD_FAULT_BIT(ETHD_FAULT_DRIVE), 0);
+  moody_expect_safe(&r, _i ? ETHD_E_LAW : ETHD_E_DEVICE, _i ? ETHD_FAULT_LAW : ETHD_FAULT_DRIVE);
   rig_close(&r);
 }
 

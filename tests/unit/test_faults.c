@@ -124,24 +124,6 @@ TEST(test_budget) {
   rig_close(&r);
 }
 
-/* The rate limit holds back no fault's zero. */
-TEST(test_fault_is_quicker_than_the_rate_limit) {
-  rig r;
-  moody_open(&r, 1);
-  ethd_sense s = moody_sense(&r);
-  r.setup.limits.torque_rate = 1;
-  rig_post(&r);
-  for (int i = 0; i < 100; i++) rig_try(&r, &s);
-  ck_assert_double_gt(fabs(r.command.torque[0]), 0.05);
-  mood.contact = MOODY_FAIL;
-  rig_try(&r, &s);
-  moody_expect_safe(&r, ETHD_E_LAW, ETHD_FAULT_LAW);
-  mood.contact = MOODY_WELL;
-  rig_try(&r, &s);
-  moody_expect_safe(&r, ETHD_E_LAW, ETHD_FAULT_LAW);
-  rig_close(&r);
-}
-
 TEST(test_sentences) {
   for (int i = 0; i < ETHD_FAULT_COUNT; i++)
     for (int j = 0; j < i; j++)
