@@ -15,29 +15,6 @@ TEST(test_same_point_twice) {
   ck_assert((meet[0] == 2 && meet[1] == 5) || (meet[0] == 5 && meet[1] == 2));
 }
 
-/* ---- a tick ---- */
-
-static ethd_sense sense_at(const rig *r, double d) {
-  motion m = rig_at(d, 0, 0);
-  ethd_sense s = rig_sense(&r->setup.arm, &m);
-  s.time_ns = r->sense.time_ns + 1000000;
-  return s;
-}
-
-/* Each joint's range, on both sides. */
-TEST(test_joints) {
-  for (int k = 0; k < 4; k++) {
-    rig r;
-    rig_begin(&r, NULL, NULL);
-    ethd_sense s = sense_at(&r, 0.02);
-    r.setup.limits.joints[k] = s.q[k / 2] + (k % 2 ? -0.01 : 0.01);
-    rig_post(&r);
-    ck_assert_int_lt(rig_try(&r, &s), 0);
-    ck_assert_int_eq(r.trace.fault, ETHD_FAULT_WORKSPACE);
-    rig_close(&r);
-  }
-}
-
 /* ---- which law runs ---- */
 
 static const ethd_control *asked;

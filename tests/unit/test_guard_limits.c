@@ -67,25 +67,28 @@ TEST(test_margin_of_reach) {
   ck_assert_double_eq_tol(f.y, 4, 1e-9);
 }
 
-/* The hard bounds stop: the workspace's, the reach's, the joints'. Degraded first, where there is a margin. */
-TEST_LOOP(test_bounds, 0, 3) {
+/* The hard bounds stop: the workspace's, the reach's, each end of each joint's range. Degraded first, where
+   there is a margin. */
+TEST_LOOP(test_bounds, 0, 6) {
+  const bool inward = _i == 3 || _i == 4; /* q1 falls and q2 rises on the way out */
   rig r;
   moody_open(&r, 1);
   if (_i == 0) r.setup.limits.workspace[1] = 0.26;
   if (_i == 1) r.setup.limits.reach[1] = hypot(0.26, 0.25);
-  if (_i == 2) r.setup.limits.joints[3] = at(&r, 0.010, 0).q[1]; /* q2 rises on the way out */
+  if (_i >= 2) r.setup.limits.joints[_i - 2] = at(&r, 0.010, 0).q[(_i - 2) / 2];
   if (_i < 2) r.setup.limits.margin = 0.004;
   rig_post(&r);
   for (int k = 0; k < 20; k++) {
-    ethd_sense s = at(&r, 0.0005 * k + 0.0001, -0.1);
+    ethd_sense s = at(&r, inward ? 0.0199 - 0.0005 * k : 0.0005 * k + 0.0001, -0.1);
     ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   }
   ck_assert_uint_eq(rig_counted(&r, ETHD_FAULT_WORKSPACE), _i < 2);
-  ethd_sense s = at(&r, 0.0102, -0.1);
+  const double beyond = inward ? 0.0098 : 0.0102;
+  ethd_sense s = at(&r, beyond, -0.1);
   rig_try(&r, &s);
   ck_assert(r.trace.fault == ETHD_FAULT_WORKSPACE && r.command.safe == 0);
   ck_assert_double_eq_tol(r.command.torque[0], 0.25 * MOODY_PROBE * 0.1, 0.03);
-  s = at(&r, 0.0102, 0);
+  s = at(&r, beyond, 0);
   rig_try(&r, &s);
   ck_assert(r.trace.fault == ETHD_FAULT_WORKSPACE && r.command.safe == 1);
   rig_close(&r);
