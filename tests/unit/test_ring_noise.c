@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "unit/rig.h"
 #include "unit/ring_scene.h"
@@ -144,46 +143,4 @@ TEST(test_forged) {
   say("with a right CRC", &c);
   ck_assert_double_le(c.worst, 1.5e-3);
   ck_assert_double_le((double)c.off, 0.01 * (double)c.damaged);
-}
-
-/* Random bytes, no frame among them but by chance. */
-TEST(test_babble) {
-  ring_scene s = scene_open(1, &r);
-  uint8_t bytes[4096];
-  ethd__ring_reading reading;
-  uint64_t used = 0, n = wanted() * ETHD__FRAME_WIRE / sizeof bytes + 1;
-  (void)s;
-  for (uint64_t i = 0; i < n; i++) {
-    for (size_t k = 0; k < sizeof bytes; k += 8) {
-      uint64_t x = draw_bits(i * sizeof bytes + k);
-      memcpy(bytes + k, &x, 8);
-    }
-    const uint8_t *at = bytes;
-    while (ethd__receiver_next(&r, &at, bytes + sizeof bytes, (int64_t)i * 100000, &reading)) used++;
-  }
-  printf("random bytes: %" PRIu64 ", %" PRIu64 " readings\n", n * sizeof bytes, used);
-  ck_assert_uint_le(used, 1 + n / 10000000);
-}
-
-/* Timed under make stress alone: the figure is for reading, the test asserts none. */
-TEST(test_speed) {
-  enum { FRAMES = 20000 };
-  static uint8_t wire[FRAMES * ETHD__FRAME_WIRE];
-  double best = 0;
-  ring_wire(0, FRAMES, wire);
-  for (int round = 0; round < 50; round++) {
-    struct timespec from, to;
-    ethd__decoder d = {0};
-    ethd__ring_frame f;
-    clock_gettime(CLOCK_MONOTONIC, &from);
-    for (size_t at = 0; at < sizeof wire; at += 4096) {
-      const uint8_t *p = wire + at, *end = p + (sizeof wire - at < 4096 ? sizeof wire - at : 4096);
-      while (ethd__decoder_next(&d, &p, end, &f)) {
-      }
-    }
-    clock_gettime(CLOCK_MONOTONIC, &to);
-    ck_assert_uint_eq(d.counters.frames, FRAMES);
-    best = fmax(best, sizeof wire / ((double)(to.tv_sec - from.tv_sec) + 1e-9 * (double)(to.tv_nsec - from.tv_nsec)));
-  }
-  printf("decoder: %.0f MB/s, %.0f ns a frame (best of 50)\n", 1e-6 * best, 1e9 * ETHD__FRAME_WIRE / best);
 }
