@@ -108,8 +108,8 @@ static void print(int row, const char *how, const char *bound, const char *worst
          bound ? bound : ethd_fault_bound((ethd_fault)row), worst, reaction, verdict, how);
 }
 
-/* A drive on a bus, and a board on its line, answer in true time: on a machine that is so busy that they are late,
-   what goes wrong is no word about the fault until it does so three times. */
+/* A drive on a bus and a board on its line answer in true time. A busy machine can delay their answers; a trial counts
+   as failed only if it fails three times. */
 static void repeat(const fault_row *t, int trial, outcome *o) {
   outcome before = *o;
   int most = t->device == FAULT_BUS || t->device == FAULT_RING ? 3 : 1;

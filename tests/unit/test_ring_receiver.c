@@ -99,7 +99,6 @@ TEST(test_sensor_faults) {
   }
 }
 
-/* A whole board is missing: four of 16, and the flag says so. */
 /* All sensors count more, or less, than when they were calibrated: each ray is on the others' circle, whose radius is wrong.
    A finger of another radius is no drift, nor is a calibration that is a tenth of a millimetre off at each sensor. */
 TEST(test_drift) {
@@ -126,6 +125,7 @@ TEST(test_drift) {
     }
 }
 
+/* A board doesn't answer: its four sensors are out of use, and the frame's flag is set. */
 TEST(test_board_missing) {
   ring_scene s = scene_open(2, &r);
   ethd__ring_reading reading;
