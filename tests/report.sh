@@ -265,7 +265,7 @@ refuse 2 "report: holds .* already; --force" "$here"
 refuse 2 "is the study's own folder" "$here" --out "$here" --force
 bad '3s/,ok,/,fine,/' 'taps.csv:[0-9]*: reason: found "fine"\|'
 bad '1s/,reason,/,why,/' 'taps.csv:1: no column reason'
-bad '4s/$/,1/' 'taps.csv:4: 36 cells, the header has 35'
+bad '4s/$/,1/' 'taps.csv:4: found 36 cells, 35 are allowed'
 bad 's/,ok,/,ok,x/' 'taps.csv:[0-9]*: v_rvo_mps: found "x'
 bad '2,$d' 'no test tap'
 rm "$folder/bad/taps.csv"

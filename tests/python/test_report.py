@@ -18,7 +18,7 @@ from ethd_programs.report.output import ReportFolder, cell_text, harmless  # noq
 from ethd_programs.report.page import Page  # noqa: E402
 from ethd_programs.report.pictures import _path, _string  # noqa: E402
 from ethd_programs.report.study import Table  # noqa: E402
-from ethd_programs.report.taps import _Reader  # noqa: E402
+from ethd_programs.report import taps  # noqa: E402
 
 
 def test_wilcoxon_tries_all_signs():
@@ -137,23 +137,24 @@ def test_gnuplot_gets_strings():
 def test_tables_of_a_stranger():
     assert list(Table("x", 'a,b\n1,"p, ""q"""\r\n').cells("b", "c")) == [['p, "q"', ""]]
     assert list(Table("x", None).cells("a")) == [] and Table("x", None).names == []
-    for text, what in (("", "is empty"), ("a,b\n1\n", "x:2: 1 cell, the header has 2"), ('a\n"1\n', "x:2: a quote that isn't closed"), ("a\n\0\n", "a byte 0")):
-        with pytest.raises(Refusal, match=what):
+    for text, what in (("", "x:1: a name for each column"), ("a,b\n1\n", "x:2: found 1 cell, 2 are allowed"), ('a\n"1\n', "x:2: a quote that isn't closed"),
+                       ("a\n\0\n", "a byte 0"), ("a,a\n", "each once")):
+        with pytest.raises(ValueError, match=what):
             Table("x", text)
 
 
 def test_numbers_and_words_of_a_stranger():
-    reader = _Reader(Table("taps.csv", "a\n1\n"), {}, set())
-    assert reader.number(0, "a", "-1.5e3") == -1500 and math.isnan(reader.number(0, "a", ""))
-    for cell in ("x", "1_0", "0x1", " 1", "inf", "1e"):
-        with pytest.raises(Refusal, match="taps.csv:2: a: found"):
-            reader.number(0, "a", cell)
-    for point in ("-1", "x", "1e9"):
-        with pytest.raises(Refusal, match="a point of the grid"):
-            reader.point(0, point)
-    for speed in ("fast", "3", "nan"):
-        with pytest.raises(Refusal, match="low, high or a number"):
-            reader.speed(0, speed)
+    def read(column, cell):
+        good = {"participant": "P01", "transition": "smooth", "speed": "0.3", "reason": "ok", column: cell}
+        return taps.read(Table("taps.csv", ",".join(good) + "\n" + ",".join(good.values()) + "\n"), {})[column][0]
+
+    assert read("eps_m", "-1.5e3") == -1500 and math.isnan(read("eps_m", "")) and read("by_ring", "") == "" and read("point", "") == 0
+    for column, cells, allowed in (("eps_m", ("x", "1_0", "0x1", " 1", "inf", "1e"), "a number"), ("point", ("-1", "x", "1e9", "nan"), "a point of the grid"),
+                                   ("speed", ("fast", "3", "nan", "../3"), "low, high or a number"), ("participant", ("", "a/b", ".."), "a word of up to 31"),
+                                   ("reason", ("", "fine"), "ok, early-contact")):
+        for cell in cells:
+            with pytest.raises(Refusal, match=f"taps.csv:2: {column}: found .*{allowed}"):
+                read(column, cell)
 
 
 def test_a_folder_is_written_by_one_program(tmp_path):

@@ -48,14 +48,14 @@ class _Recorded:
     def __init__(self, folder: str, plugins: bool = False):
         self.folder = folder
         self._plugins = plugins
-        self.tick = mapped(os.path.join(folder, "tick.npy"))
+        self.tick = mapped(folder, "tick.npy")
         self.truth = self._array("truth.npy")
         self.taps = table(os.path.join(folder, "taps.csv")) if there(folder, "taps.csv") else None
         self.events = events(folder)
         self.config = ini(os.path.join(folder, "config.ini"))
 
     def _array(self, name: str) -> Optional[NDArray[Any]]:
-        return mapped(os.path.join(self.folder, name)) if there(self.folder, name) else None
+        return mapped(self.folder, name) if there(self.folder, name) else None
 
     def _make(self, config: str) -> Union[Controller, Space]:
         raise NotImplementedError

@@ -70,11 +70,11 @@ def _convert(folder: str, out: str) -> str:
                 FAILED,
             )
         from ethd_programs.convert_mcap import write
-    with Ticks(folder) as ticks:
-        _refuse_inputs(folder, out)
-        found = events(folder)
-        write(ticks, found, out, folder, progress(out))
-        return f"{out}: {ticks.count} tick{plural(ticks.count)}, {len(found)} event{plural(len(found))}"
+    ticks = Ticks(folder)
+    _refuse_inputs(folder, out)
+    found = events(folder)
+    write(ticks, found, out, folder, progress(out))
+    return f"{out}: {ticks.count} tick{plural(ticks.count)}, {len(found)} event{plural(len(found))}"
 
 
 def _main(arguments: Sequence[str]) -> int:

@@ -30,12 +30,12 @@ def header(file: BinaryIO) -> Header:
     return Header(shape, fortran, dtype, file.tell())
 
 
-def mapped(path: str) -> NDArray[Any]:
-    """An array that is mapped from its file, so that it takes no memory before it is looked at."""
-    with opened(*os.path.split(path)) as file:
+def mapped(folder: str, *names: str) -> NDArray[Any]:
+    """The array in folder/names..., mapped from its file, so that it takes no memory before it is looked at."""
+    with opened(folder, *names) as file:
         try:
             h = header(file)
             found: NDArray[Any] = np.memmap(file, h.dtype, "r", h.data, h.shape, "F" if h.fortran else "C")
         except (ValueError, EOFError, OverflowError) as e:
-            raise ValueError(f"{path}: no array, or cut short: {e}") from None
+            raise ValueError(f"{os.path.join(folder, *names)}: no array, or cut short: {e}") from None
     return found

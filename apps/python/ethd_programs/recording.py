@@ -1,5 +1,6 @@
 """Recordings, the folders that the programs write (include/ethd/record.h), read in pieces."""
 import datetime
+import mmap
 import os
 from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
 
@@ -7,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ethd_programs.cli import Refusal
-from ethd_programs.files import opened, reason, there
-from ethd_programs.npy import header
+from ethd_programs.files import reason, there
+from ethd_programs.npy import mapped
 from ethd_programs.table import lines
 
 FILES = ("tick.npy", "config.ini", "scene.scene", "events.csv", "truth.npy", "snapshot.npy", "taps.csv")
@@ -195,43 +196,22 @@ def events(folder: str) -> List[RecordedEvent]:
 
 
 class Ticks:
-    """The ticks of a recording, read in pieces, so that the longest one takes little memory.
-
-        with Ticks("recording") as ticks: for piece in ticks.pieces(): ..."""
+    """The ticks of a recording, in pieces, so that the longest one takes little memory."""
 
     def __init__(self, folder: str):
-        self.path = os.path.join(folder, "tick.npy")
         try:
-            self._file = opened(folder, "tick.npy")
+            self._rows = mapped(folder, "tick.npy")
         except (FileNotFoundError, NotADirectoryError) as e:
             raise Refusal(f"{folder}: no recording, whose tick.npy is needed: {reason(e)}; ethd-run --record makes one") from None
-        try:
-            found = header(self._file)
-        except (ValueError, EOFError, OverflowError) as e:
-            raise Refusal(f"{self.path}: no array, or cut short: {e}") from None
-        self.fields = fields_of(found.dtype)
-        self._dtype = found.dtype
-        if not self.fields or len(found.shape) != 1:
-            raise Refusal(f"{self.path}: other columns than those of this version of libethd")
-        there_are = (os.fstat(self._file.fileno()).st_size - found.data) // self._dtype.itemsize
-        self.count = found.shape[0]
-        if there_are < self.count:
-            raise Refusal(f"{self.path}: cut short: {there_are} rows of {self.count} are there")
+        self.count, self.fields = self._rows.size, fields_of(self._rows.dtype)
+        if not self.fields or self._rows.ndim != 1:
+            raise Refusal(f"{folder}/tick.npy: other columns than those of this version of libethd")
 
     def pieces(self) -> Iterator[NDArray[Any]]:
-        left = self.count
-        while left:
-            piece = np.fromfile(self._file, self._dtype, min(left, PIECE))
-            if not len(piece):
-                raise Refusal(f"{self.path}: cut short while it was read")
-            left -= len(piece)
-            yield piece
-
-    def __enter__(self) -> "Ticks":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._file.close()
+        for i in range(0, self.count, PIECE):
+            yield self._rows[i : i + PIECE]
+            file: Any = self._rows.base
+            file.madvise(mmap.MADV_DONTNEED)  # else its pages stay in memory
 
 
 def ahead(piece: NDArray[Any], last: Optional[int], shift: int) -> Tuple[NDArray[Any], int]:

@@ -8,9 +8,10 @@ from typing import Any, Iterator, List, Tuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ethd_programs.cli import plural
 from ethd_programs.files import has_hole, opened
 
-#: A unit in a column's name says that it is one of real numbers, even where it has none, or has whole ones by chance.
+#: A column whose name ends in a unit is float64, even if it is empty or holds only integers.
 _UNITS = re.compile(r".*_(m|mm|s|ms|mps|rad|radps|n|N|nm|Nm|hz)")
 #: Columns of whole numbers, which are numbers even where none is given.
 _COUNTS = {"analysed", "attempt", "block", "point", "seed", "tap", "taps", "valid"}
@@ -51,29 +52,41 @@ def words(path: str, errors: str = "strict") -> str:
         raise ValueError(f"{path}:{line}: found the byte {data[e.start]:#x}, UTF-8 is allowed") from None
 
 
-def lines(path: str, errors: str = "strict") -> Iterator[Tuple[int, List[str]]]:
-    """The cells of each line of a table, with the line's number in the file."""
-    reader = csv.reader(io.StringIO(words(path, errors), newline=""), strict=True)
+def rows(path: str, text: str) -> Iterator[Tuple[int, List[str]]]:
+    """The cells of each line of a CSV file, with the line's number."""
+    if "\0" in text:
+        raise ValueError(f"{path}: a byte 0: this isn't text")
+    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
     try:
         for row in reader:
             yield reader.line_num, row
     except csv.Error as e:
-        raise ValueError(f"{path}:{reader.line_num}: {e}") from None
+        why = "a quote that isn't closed" if "unexpected end" in str(e) else e
+        raise ValueError(f"{path}:{reader.line_num}: {why}") from None
+
+
+def lines(path: str, errors: str = "strict") -> Iterator[Tuple[int, List[str]]]:
+    return rows(path, words(path, errors))
+
+
+def named(path: str, text: str) -> Iterator[List[str]]:
+    """The names of a table's columns, then the cells of each row."""
+    found = rows(path, text)
+    _, names = next(found, (1, []))
+    if not names or "" in names or len(set(names)) != len(names):
+        raise ValueError(f"{path}:1: a name for each column is needed, and each once")
+    yield names
+    for number, row in found:
+        if len(row) != len(names):
+            raise ValueError(f"{path}:{number}: found {len(row)} cell{plural(len(row))}, {len(names)} are allowed")
+        yield row
 
 
 def table(path: str) -> NDArray[Any]:
     """A row for each line after the first, which names the columns."""
-    found_lines = lines(path)
-    _, names = next(found_lines, (1, []))
-    rows = []
-    for number, row in found_lines:
-        if len(row) != len(names):
-            raise ValueError(f"{path}:{number}: found {len(row)} cells, {len(names)} are allowed")
-        rows.append(row)
-    if not names or "" in names or len(set(names)) != len(names):
-        raise ValueError(f"{path}:1: a name for each column is needed, and each once")
-    columns = [_column(name, [row[i] for row in rows]) for i, name in enumerate(names)]
-    found: Any = np.empty(len(rows), [(name, column.dtype) for name, column in zip(names, columns)])
+    names, *cells = named(path, words(path))
+    columns = [_column(name, [row[i] for row in cells]) for i, name in enumerate(names)]
+    found: Any = np.empty(len(cells), [(name, column.dtype) for name, column in zip(names, columns)])
     for name, column in zip(names, columns):
         found[name] = column
     return found  # type: ignore[no-any-return]

@@ -3,23 +3,22 @@
 What its study file, configuration, plant and walls mean, ethd-study says (--describe); nothing here reads them again. The
 folder may be a stranger's: no link in it is followed, and only regular files are read.
 """
-import csv
-import io
 import json
 import os
 import re
 import shutil
 import subprocess
 import sys
+from itertools import islice
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ethd_programs.cli import FAILED, Refusal, plural
-from ethd_programs.files import opened, there
-from ethd_programs.npy import header
-from ethd_programs.table import words
+from ethd_programs.cli import FAILED, Refusal
+from ethd_programs.files import there
+from ethd_programs.npy import mapped
+from ethd_programs.table import named, words
 
 Ticks = NDArray[Any]  #: a row a tick, with the columns of a recording
 
@@ -42,42 +41,19 @@ class Table:
     """A CSV file of words: one header row, cells by name. A table that isn't there has no columns."""
 
     def __init__(self, path: str, text: Optional[str]):
-        self.path, self._text, self.rows = path, text, 0
+        """ValueError: the text is no table."""
+        self.path, self._text = path, text
         self.names: List[str] = []
-        if text is None:
-            return
-        if not text:
-            raise Refusal(f"{path}: is empty")
-        if "\0" in text:
-            raise Refusal(f"{path}: a byte 0: this isn't text")
-        lines = self._lines()
-        self.names = next(lines)
-        for self.rows, cells in enumerate(lines, 1):
-            if len(cells) != len(self.names):
-                found = f"{len(cells)} cell{plural(len(cells))}"
-                raise Refusal(f"{path}:{self.rows + 1}: {found}, the header has {len(self.names)}")
+        for row in self._rows():
+            self.names = self.names or row
 
-    def _lines(self) -> Iterator[List[str]]:
-        reader = csv.reader(io.StringIO(self._text, newline=""), strict=True)
-        number = 0
-        while True:
-            number += 1
-            try:
-                yield next(reader) or [""]
-            except StopIteration:
-                return
-            except csv.Error as e:
-                why = "a quote that isn't closed" if "unexpected end" in str(e) else str(e)
-                raise Refusal(f"{self.path}:{number}: {why}") from None
+    def _rows(self) -> Iterator[List[str]]:
+        return iter(()) if self._text is None else named(self.path, self._text)
 
     def cells(self, *columns: str) -> Iterator[List[str]]:
         """These cells of each row; "" where a column is missing."""
-        if self._text is None:
-            return
         at = [self.names.index(name) if name in self.names else -1 for name in columns]
-        lines = self._lines()
-        next(lines)
-        for row in lines:
+        for row in islice(self._rows(), 1, None):
             yield ["" if i < 0 else row[i] for i in at]
 
 
@@ -122,20 +98,15 @@ class Folder:
         """tick.npy or truth.npy of a tap's recording."""
         folder = next(f for f in self.folders if recording.startswith(os.path.join(f, "")))
         path = os.path.join(recording, file)
-        names = os.path.relpath(path, folder).split(os.sep)
         try:
-            with opened(folder, *names) as stream:
-                h = header(stream)
-                if len(h.shape) != 1 or not set(columns) <= set(h.dtype.names or ()):
-                    raise ValueError("other columns than those of this version of libethd")
-                if h.data + h.shape[0] * h.dtype.itemsize > os.fstat(stream.fileno()).st_size:
-                    raise ValueError(f"cut short: its header counts {h.shape[0]} rows")
-                rows: Ticks = np.fromfile(stream, h.dtype, h.shape[0])
-                return rows
+            rows: Ticks = np.asarray(mapped(folder, *os.path.relpath(path, folder).split(os.sep)))
         except OSError as e:
             raise _refusal(e) from None
-        except (ValueError, EOFError, OverflowError, MemoryError) as e:
-            raise Refusal(str(e) if path in str(e) else f"{path}: {e}", FAILED) from None
+        except ValueError as e:
+            raise Refusal(str(e), FAILED) from None
+        if rows.ndim != 1 or not set(columns) <= set(rows.dtype.names or ()):
+            raise Refusal(f"{path}: other columns than those of this version of libethd", FAILED)
+        return rows
 
 
 def check_sums(folders: Sequence[str]) -> Tuple[int, str]:

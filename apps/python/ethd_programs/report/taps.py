@@ -1,20 +1,21 @@
 """The taps of a table, by cell: a strategy at a speed."""
 import re
-from array import array
+import sys
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional, Sequence, Set, Tuple
+from typing import Any, Callable, Dict, List, Optional, Set, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from ethd_programs.cli import Refusal, quoted
 from ethd_programs.report.statistics import NAN, Numbers
 from ethd_programs.report.study import Folder, Table
 
 REASONS = ("ok", "early-contact", "too-slow", "too-fast", "no-contact", "grazing", "double", "fault")
+_A_REASON = "ok, early-contact and the like"
 _CELLS = 64  # that a table may have
 _POINTS = 100000  # of a grid
-_WORDS = ("participant", "transition", "speed")  # that stand in names of files
 _NEEDED = ("v_rvo_mps", "v_of_mps", "d_max_m", "v_rmin_mps", "delta_s_ms", "eps_m", "t_rvo_s", "t_of_s", "t_seen_s",
            "peak_force_n", "finger_radius_m", "commanded_mps")
 _LATER = ("v_hand_mps", "touch_depth_m", "eps_felt_m")  # a table of an earlier version lacks these
@@ -34,13 +35,13 @@ class Cell:
 
     law: str
     speed: Speed
-    reason: NDArray[np.str_]
-    by_ring: NDArray[np.str_]
-    by_finger: NDArray[np.str_]
-    hand: NDArray[np.str_]
+    reason: NDArray[Any]
+    by_ring: NDArray[Any]
+    by_finger: NDArray[Any]
+    hand: NDArray[Any]
     person: NDArray[np.int64]  #: an index of Taps.people
     row: NDArray[np.int64]  #: of the table, from 0
-    name: NDArray[np.str_]  #: of the tap's recording
+    name: NDArray[Any]  #: of the tap's recording
     figures: Dict[str, Numbers]  #: by column of the table; and delay_s
 
     @property
@@ -130,17 +131,9 @@ class Taps:
             return out
         there = ~np.isnan(values)
         person, value = cell.person[there], values[there]
-        order = np.lexsort((value, person))
-        person, value = person[order], value[order]
-        if not len(person):
-            return out
-        first = np.flatnonzero(np.concatenate(([True], np.diff(person) != 0)))
-        count = np.diff(np.append(first, len(person)))
-        if how == "median":
-            found = (value[first + (count - 1) // 2] + value[first + count // 2]) / 2
-        else:
-            found = np.add.reduceat(value, first) / count
-        out[person[first]] = found
+        if len(person):
+            index = np.unique(person)
+            out[index] = {"median": ndimage.median, "mean": ndimage.mean}[how](value, person, index)
         return out
 
     def medians(self, cell: Optional["Cell"], quantity: Quantity) -> Numbers:
@@ -150,101 +143,32 @@ class Taps:
 # ---- reading ----
 
 
-def _real(cell: str) -> float:
-    try:
-        return float(cell)
-    except ValueError:
-        return NAN
+def _word(cell: str) -> str:
+    if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.+-]{0,30}", cell):
+        raise ValueError
+    return sys.intern(cell)
 
 
-class _Reader:
-    """Takes the rows of a table into cells, point by point."""
+def _reason(cell: str) -> str:
+    return REASONS[REASONS.index(cell)]
 
-    def __init__(self, table: Table, speeds: Dict[str, Any], absent: Set[str]):
-        self.table, self.speeds, self.absent = table, speeds, absent
-        self.taps: Dict[int, Taps] = {}
-        self.rows: Dict[int, Dict[Tuple[str, str], Any]] = {}
 
-    def refuse(self, row: int, column: str, found: str, allowed: str) -> Refusal:
-        return Refusal(f"{self.table.path}:{row + 2}: {column}: found {quoted(found)}, {allowed} is allowed")
+def _other_reason(cell: str) -> str:
+    """A table of an earlier version may leave the other rule's empty."""
+    return _reason(cell) if cell else ""
 
-    def number(self, row: int, column: str, cell: str) -> float:
-        if not cell:
-            return NAN
-        try:
-            if cell.strip("0123456789.eE+-") and cell != "nan":
-                raise ValueError
-            return float(cell)
-        except ValueError:
-            raise self.refuse(row, column, cell, "a number") from None
 
-    def point(self, row: int, cell: str) -> int:
-        point = _real(cell or "0")
-        if not 0 <= point <= _POINTS:
-            raise self.refuse(row, "point", cell, "a point of the grid")
-        return int(point)
+def _number(cell: str) -> float:
+    if cell.strip("0123456789.eE+-") and cell != "nan":
+        raise ValueError
+    return float(cell or "nan")
 
-    def speed(self, row: int, word: str) -> Speed:
-        known = self.speeds.get(word)
-        if known:
-            return Speed(word, known["centre_mps"], known["band_mps"])
-        v = _real(word)
-        if not 0.01 <= v <= 2:
-            raise self.refuse(row, "speed", word, "low, high or a number, in 64 cells,")
-        return Speed(word, v, 0.04 + 0.1 * v)
 
-    def reason(self, row: int, column: str, cell: str) -> str:
-        """A table of an earlier version may leave the other rule's empty."""
-        if cell in REASONS or (not cell and column != "reason"):
-            return cell
-        raise self.refuse(row, column, cell, "ok, early-contact and the like")
-
-    def take(self, row: int, cells: Dict[str, str]) -> None:
-        at = self.point(row, cells["point"])
-        taps, lists = self.taps.setdefault(at, Taps()), self.rows.setdefault(at, {})
-        for column in _WORDS:
-            if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.+-]{0,30}", cells[column]):
-                raise self.refuse(row, column, cells[column], "a word of up to 31 letters, digits, _ . + -")
-        if cells["part"] == "training":
-            taps.training += 1
-            return
-        if cells["participant"] in self.absent:
-            taps.left_out += 1
-            return
-        taps.accepted += cells["checked"] == "accepted"
-        if cells["checked"] == "rejected":
-            taps.rejected += 1
-            return
-        key = (cells["transition"], cells["speed"])
-        if key not in lists:
-            if len(lists) == _CELLS:
-                raise self.refuse(row, "speed", cells["speed"], "low, high or a number, in 64 cells,")
-            lists[key] = (self.speed(row, cells["speed"]), {c: [] for c in ("reason", "by_ring", "by_finger", "hand", "participant", "row", "name")},
-                          {c: array("d") for c in (*_NEEDED, *_LATER)})
-        _, plain, figures = lists[key]
-        for column in ("reason", "by_ring", "by_finger"):
-            plain[column].append(self.reason(row, column, cells[column]))
-        for column, numbers in figures.items():
-            numbers.append(self.number(row, column, cells[column]))
-        for column in ("hand", "participant"):
-            plain[column].append(cells[column])
-        plain["row"].append(row)
-        plain["name"].append(_recording(cells))
-
-    def finish(self, at: int) -> Taps:
-        taps, lists = self.taps[at], self.rows[at]
-        everybody: List[str] = list(dict.fromkeys(p for _, i, p in sorted(
-            (row, k, p) for k, (_, plain, _) in enumerate(lists.values()) for row, p in zip(plain["row"], plain["participant"]))))
-        index = {p: i for i, p in enumerate(everybody)}
-        taps.people = everybody
-        for (law, _), (speed, plain, lists_of) in lists.items():
-            figures = {c: np.array(v) for c, v in lists_of.items()}
-            figures["delay_s"] = figures["t_of_s"] - figures["t_seen_s"]
-            taps.cells.append(Cell(law, speed, np.array(plain["reason"]), np.array(plain["by_ring"]), np.array(plain["by_finger"]),
-                                   np.array(plain["hand"]), np.array([index[p] for p in plain["participant"]]), np.array(plain["row"]),
-                                   np.array(plain["name"]), figures))
-        taps.cells.sort(key=lambda c: (c.speed.centre, _ORDER.index(c.law) if c.law in _ORDER else len(_ORDER), c.law))
-        return taps
+def _point(cell: str) -> int:
+    point = float(cell or "0")
+    if not 0 <= point <= _POINTS:
+        raise ValueError
+    return int(point)
 
 
 def _whole(cell: str) -> int:
@@ -252,9 +176,62 @@ def _whole(cell: str) -> int:
     return int(found.group()) if found else 0
 
 
-def _recording(cells: Dict[str, str]) -> str:
-    point = [cells["point"]] if cells["point"] else []
-    return "-".join([*point, cells["participant"], f"{_whole(cells['block']):02d}", f"{_whole(cells['attempt']):03d}"])
+def _speed(word: str, known: Dict[str, Any]) -> Speed:
+    if word in known:
+        return Speed(_word(word), known[word]["centre_mps"], known[word]["band_mps"])
+    v = float(_word(word))
+    if not 0.01 <= v <= 2:
+        raise ValueError
+    return Speed(word, v, 0.04 + 0.1 * v)
+
+
+_A_SPEED = f"low, high or a number, in {_CELLS} cells,"
+_PARSED: Dict[str, Tuple[Callable[[str], Any], str]] = {
+    "part": (sys.intern, ""), "checked": (sys.intern, ""), "hand": (sys.intern, ""), "block": (_whole, ""), "attempt": (_whole, ""),
+    **dict.fromkeys(("participant", "transition"), (_word, "a word of up to 31 letters, digits, _ . + -")),
+    "point": (_point, "a point of the grid"), **dict.fromkeys((*_NEEDED, *_LATER), (_number, "a number")),
+    "reason": (_reason, _A_REASON), **dict.fromkeys(("by_ring", "by_finger"), (_other_reason, _A_REASON))}
+
+
+def _refuse(table: Table, row: int, column: str, cell: str, allowed: str) -> Refusal:
+    return Refusal(f"{table.path}:{row + 2}: {column}: found {quoted(cell)}, {allowed} is allowed")
+
+
+def read(table: Table, speeds: Dict[str, Any]) -> Dict[str, NDArray[Any]]:
+    """The columns of a table of taps. speeds: what its words for speeds mean."""
+    parsed = {**_PARSED, "speed": (lambda cell: _speed(cell, speeds), _A_SPEED)}
+    found: Dict[str, List[Any]] = {column: [] for column in parsed}
+    for row, cells in enumerate(table.cells(*parsed)):
+        for cell, (column, (of, allowed)) in zip(cells, parsed.items()):
+            try:
+                found[column].append(of(cell))
+            except ValueError:
+                raise _refuse(table, row, column, cell, allowed) from None
+    return {column: np.array(values, float if parsed[column][0] is _number else object) for column, values in found.items()}
+
+
+def _of_rows(table: Table, columns: Dict[str, NDArray[Any]], rows: NDArray[np.int64], absent: Set[str]) -> Taps:
+    """The taps of these rows, all of one point of a grid."""
+    training = columns["part"][rows] == "training"
+    away = ~training & np.array([person in absent for person in columns["participant"][rows]], bool)
+    accepted, rejected = (~training & ~away & (columns["checked"][rows] == word) for word in ("accepted", "rejected"))
+    counts = (int(np.count_nonzero(which)) for which in (training, away, accepted, rejected))
+    rows = rows[~(training | away | rejected)]
+    people = {person: i for i, person in enumerate(dict.fromkeys(columns["participant"][rows]))}
+    taps = Taps([], list(people), *counts)
+    cells: Dict[Tuple[str, Speed], List[int]] = {}
+    for row in rows.tolist():
+        cells.setdefault((columns["transition"][row], columns["speed"][row]), []).append(row)
+    for k, ((law, speed), i) in enumerate(cells.items()):
+        if k == _CELLS:
+            raise _refuse(table, i[0], "speed", speed.word, _A_SPEED)
+        figures = {c: columns[c][i] for c in (*_NEEDED, *_LATER)}
+        figures["delay_s"] = figures["t_of_s"] - figures["t_seen_s"]
+        words = {c: columns[c][i] for c in ("reason", "by_ring", "by_finger", "hand", "name")}
+        person = np.array([people[who] for who in columns["participant"][i]])
+        taps.cells.append(Cell(law, speed, person=person, row=np.array(i), figures=figures, **words))
+    taps.cells.sort(key=lambda c: (c.speed.centre, _ORDER.index(c.law) if c.law in _ORDER else len(_ORDER), c.law))
+    return taps
 
 
 def of_folder(folder: Folder, point: int) -> Tuple[Dict[int, Taps], Set[str]]:
@@ -268,11 +245,13 @@ def of_folder(folder: Folder, point: int) -> Tuple[Dict[int, Taps], Set[str]]:
     if missing:
         raise Refusal(f"{table.path}:1: no column {missing[-1]}; a taps.csv of ethd-study has it")
     absent = {p for p, analysed in participants.cells("participant", "analysed") if analysed == "0"}
-    columns: Sequence[str] = (*_WORDS, "point", "part", "block", "attempt", "reason", "by_ring", "by_finger", "checked", "hand", *_NEEDED, *_LATER)
-    reader = _Reader(table, folder.facts["speeds"], absent)
-    for row, cells in enumerate(table.cells(*columns)):
-        reader.take(row, dict(zip(columns, cells)))
-    found = {at: reader.finish(at) for at in sorted(reader.taps)}
+    columns = read(table, folder.facts["speeds"])
+    named = zip(*(columns[c].tolist() for c in ("point", "participant", "block", "attempt")))
+    before = "{0}-" if "point" in table.names else ""
+    columns["name"] = np.array([(before + "{1}-{2:02d}-{3:03d}").format(*tap) for tap in named], object)
+    rows = np.argsort(columns["point"], kind="stable")
+    each, first = np.unique(columns["point"][rows].astype(int), return_index=True)
+    found = {int(at): _of_rows(table, columns, part, absent) for at, part in zip(each, np.split(rows, first[1:]))}
     if point not in found or not found[point].cells:
         raise Refusal(f"{table.path}: no test tap at point {point} of {max(found, default=0) + 1}")
     return found, absent
