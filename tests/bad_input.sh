@@ -3,33 +3,24 @@
 . tests/begin.sh
 bin=$BUILD/bin
 
-fail() {
-  failed=$((failed + 1))
-  echo "FAILED $*"
-}
-
-# refuse WHAT 'PATTERN' COMMAND...: the line on stderr matches the pattern
-refuse() {
-  what=$1 pattern=$2
-  shift 2
+# bad WHAT PATTERN COMMAND...: a short line, and what stood at the output stays
+kept=$folder/out.csv
+bad() {
+  what=$1
+  shift
   echo untouched >"$folder/out.csv"
-  "$@" >"$folder/stdout" 2>"$folder/stderr" </dev/null
-  code=$?
-  [ $code = 2 ] || fail "$what: exit $code: $(head -c 300 "$folder/stderr")"
-  [ "$(wc -l <"$folder/stderr")" = 1 ] || fail "$what: $(wc -l <"$folder/stderr") lines: $(head -3 "$folder/stderr")"
-  [ "$(wc -c <"$folder/stderr")" -lt 560 ] || fail "$what: a line of $(wc -c <"$folder/stderr") bytes"
-  grep -q -e "$pattern" "$folder/stderr" || fail "$what: no $pattern in: $(cat "$folder/stderr")"
-  [ "$(cat "$folder/out.csv")" = untouched ] || fail "$what: the output was written over"
+  refuse 2 "$@"
+  [ "$(wc -c <"$folder/err")" -lt 560 ] || fail "$what: a line of $(wc -c <"$folder/err") bytes"
   rm "$folder/out.csv"
-  left=$(ls -A "$folder" | grep -v -x -e good.ini -e good.csv -e good.scene -e good.so -e 'bad\..*' -e std... -e stderr)
+  left=$(ls -A "$folder" | grep -v -x -e good.ini -e good.csv -e good.scene -e good.so -e 'bad\..*' -e out -e err -e state)
   [ -z "$left" ] || fail "$what: left behind: $left"
 }
 
 good() {
-  "$@" >"$folder/stdout" 2>"$folder/stderr" || fail "good input: $*: $(cat "$folder/stderr")"
+  "$@" >"$folder/out" 2>"$folder/err" || fail "good input: $*: $(cat "$folder/err")"
 }
 
-replay() { refuse "$1" "$2" "$bin/ethd-replay" --config "$3" --in "$4" --out "$folder/out.csv"; }
+replay() { bad "$1" "$2" "$bin/ethd-replay" --config "$3" --in "$4" --out "$folder/out.csv"; }
 
 cat >"$folder/good.ini" <<'END'
 [scene]
@@ -55,16 +46,16 @@ head -c 5000 "$bin/ethd-check" >"$folder/bad.binary"
 
 # ---- names of files: none at all, and a plant without its configuration ----
 for command in 'ethd-tap --config=' 'ethd-run --config=' 'ethd-replay --out=o.csv --in=' 'ethd-tap --finger='; do
-  refuse "$command" '"": a file.s name is needed' "$bin"/$command
+  bad "$command" '"": a file.s name is needed' "$bin"/$command
 done
 for command in 'ethd-tap --taps 1 --plant' 'ethd-tune --plant'; do
-  refuse "$command" 'nowhere.ini: No such file or directory; the plant "nowhere" needs this configuration: put it there' "$bin"/$command nowhere
+  bad "$command" 'nowhere.ini: No such file or directory; the plant "nowhere" needs this configuration: put it there' "$bin"/$command nowhere
 done
 
 mkdir "$folder/bad.dir"
 for recording in "$folder/bad.dir" "$folder/good.csv" nowhere; do
   for command in 'ethd-replay --verify' 'ethd-convert'; do
-    refuse "$command" 'no recording, whose tick.npy is needed: No.*; ethd-run --record makes one' "$bin"/$command "$recording" \
+    bad "$command" 'no recording, whose tick.npy is needed: No.*; ethd-run --record makes one' "$bin"/$command "$recording" \
       $([ "$command" = ethd-convert ] && echo "$folder/bad.csv")
   done
 done
@@ -72,7 +63,7 @@ done
 # ---- configurations ----
 config() { # WHAT PATTERN TEXT
   printf "$3" >"$folder/bad.ini"
-  refuse "check, $1" "$2" "$bin/ethd-check" "$folder/bad.ini"
+  bad "check, $1" "$2" "$bin/ethd-check" "$folder/bad.ini"
   replay "replay, $1" "$2" "$folder/bad.ini" "$folder/good.csv"
 }
 replay 'missing configuration' 'no.ini: No such file' "$folder/no.ini" "$folder/good.csv"
@@ -86,18 +77,18 @@ config 'a byte 0' 'bad.ini:2: a byte 0' '[contact]\n\000k_e = 1\n'
 config 'missing scene' 'bad.ini:2: scene.file: .*no.scene: No such file' '[scene]\nfile = no.scene\n'
 
 printf '[device]\ndriver = none\n' >"$folder/bad.ini"
-refuse 'unknown driver' 'bad.ini: device.driver: found "none"; sim, replay' "$bin/ethd-check" "$folder/bad.ini"
+bad 'unknown driver' 'bad.ini: device.driver: found "none"; sim, replay' "$bin/ethd-check" "$folder/bad.ini"
 
 # ---- scenes ----
 scene() { # WHAT PATTERN TEXT
   printf "$3" >"$folder/bad.scene"
   printf '[scene]\nfile = bad.scene\n' >"$folder/bad.ini"
-  refuse "info, $1" "$2" "$bin/ethd-scene" info "$folder/bad.scene"
+  bad "info, $1" "$2" "$bin/ethd-scene" info "$folder/bad.scene"
   replay "replay, $1" "$2" "$folder/bad.ini" "$folder/good.csv"
 }
 scene_file() { # WHAT PATTERN FILE
   printf '[scene]\nfile = %s\n' "$3" >"$folder/bad.ini"
-  refuse "info, $1" "$2" "$bin/ethd-scene" info "$folder/$3"
+  bad "info, $1" "$2" "$bin/ethd-scene" info "$folder/$3"
   replay "replay, $1" "$2" "$folder/bad.ini" "$folder/good.csv"
 }
 scene_file 'missing scene' 'no.scene: No such file' no.scene
@@ -139,24 +130,20 @@ trace 'time runs back' 'bad.csv:4: t_s: ' "$names\n0$row\n2$row\n1$row\n"
 # ---- an output that is an input ----
 cp "$folder/good.csv" "$folder/bad.csv"
 same() { # PATTERN COMMAND...
-  pattern=$1
-  shift
-  "$@" >"$folder/stdout" 2>"$folder/stderr"
-  [ $? = 2 ] && grep -q -e "$pattern" "$folder/stderr" || fail "$*: $(cat "$folder/stderr")"
+  refuse 2 "$@"
   cmp "$folder/good.csv" "$folder/bad.csv" || fail "$*: its input was written over"
 }
 ln -s bad.csv "$folder/bad.link"
 same 'out: .*bad.csv is the file of --in' "$bin/ethd-replay" --in "$folder/bad.csv" --out "$folder/bad.csv"
 same 'out: .*bad.link is the file of --in' "$bin/ethd-replay" --in "$folder/bad.csv" --out "$folder/bad.link"
 cp "$folder/good.scene" "$folder/bad.scene"
-"$bin/ethd-scene" convert --in "$folder/bad.scene" --out "$folder/bad.scene" >"$folder/stdout" 2>"$folder/stderr"
-[ $? = 2 ] && grep -q 'out: .*bad.scene is the file of --in' "$folder/stderr" || fail "ethd-scene: $(cat "$folder/stderr")"
+refuse 2 'out: .*bad.scene is the file of --in' "$bin/ethd-scene" convert --in "$folder/bad.scene" --out "$folder/bad.scene"
 awk 'BEGIN { print "t_s,x_m,y_m"; for (i = 0; i < 120; i++) { t = i / 200; printf "%.4f,%.6f,0\n", t, 0.1 * cos(5 * t) } }' >"$folder/bad.csv"
 cp "$folder/bad.csv" "$folder/bad.before"
 for option in --csv --record --trace; do
-  "$bin/ethd-tap" --taps 1 --speed 0.2 --finger "$folder/bad.csv" $option "$folder$([ $option != --csv ] || echo /bad.csv)" --force >"$folder/stdout" 2>"$folder/stderr"
+  "$bin/ethd-tap" --taps 1 --speed 0.2 --finger "$folder/bad.csv" $option "$folder$([ $option != --csv ] || echo /bad.csv)" --force >"$folder/out" 2>"$folder/err"
   code=$?
-  [ $option = --record ] || [ $code = 2 ] || fail "ethd-tap $option over its finger: exit $code: $(cat "$folder/stderr")"
+  [ $option = --record ] || [ $code = 2 ] || fail "ethd-tap $option over its finger: exit $code: $(cat "$folder/err")"
   cmp "$folder/bad.csv" "$folder/bad.before" || fail "ethd-tap $option: its finger was written over"
 done
 rm -f "$folder"/tick.npy "$folder"/truth.npy "$folder"/taps.csv "$folder"/config.ini "$folder"/scene.scene "$folder"/events.csv
@@ -165,10 +152,10 @@ rm -f "$folder/bad.csv" "$folder/bad.link" "$folder/bad.before"
 # ---- movements ----
 finger() { # WHAT PATTERN TEXT
   printf "$3" >"$folder/bad.csv"
-  refuse "$1" "$2" "$bin/ethd-tap" --taps 1 --finger "$folder/bad.csv" --csv "$folder/out.csv"
+  bad "$1" "$2" "$bin/ethd-tap" --taps 1 --finger "$folder/bad.csv" --csv "$folder/out.csv"
 }
-refuse 'missing movement' 'no.csv: No such file' "$bin/ethd-tap" --taps 1 --finger "$folder/no.csv" --csv "$folder/out.csv"
-refuse 'huge movement' 'bad.huge:1: ' "$bin/ethd-tap" --taps 1 --finger "$folder/bad.huge" --csv "$folder/out.csv"
+bad 'missing movement' 'no.csv: No such file' "$bin/ethd-tap" --taps 1 --finger "$folder/no.csv" --csv "$folder/out.csv"
+bad 'huge movement' 'bad.huge:1: ' "$bin/ethd-tap" --taps 1 --finger "$folder/bad.huge" --csv "$folder/out.csv"
 finger 'a movement of one sample' 'bad.csv' 't_s,x_m,y_m\n0,0,0\n'
 finger 'a movement without y' 'bad.csv:1: ' 't_s,x_m\n0,0\n1,1\n'
 finger 'NaN in a movement' 'bad.csv:3: x_m: ' 't_s,x_m,y_m\n0,0,0\n0.01,nan,0\n0.02,0,0\n'
@@ -190,8 +177,8 @@ END
 compile() { ${CC:-cc} -Iinclude -fPIC -shared "-DID=\"$1\"" -o "$folder/$2" "$folder/bad.c"; }
 plugin() { # WHAT PATTERN FILE
   printf '[plugins]\nfile = %s\n' "$3" >"$folder/bad.ini"
-  refuse "check, $1" "bad.ini:2: plugins.file: $2" "$bin/ethd-check" "$folder/bad.ini"
-  refuse "laws, $1" "plugins.file: $2" "$bin/ethd-check" --laws --plugin "$folder/$3" --csv "$folder/out.csv"
+  bad "check, $1" "bad.ini:2: plugins.file: $2" "$bin/ethd-check" "$folder/bad.ini"
+  bad "laws, $1" "plugins.file: $2" "$bin/ethd-check" --laws --plugin "$folder/$3" --csv "$folder/out.csv"
 }
 compile own good.so || fail 'the example plugin does not compile'
 printf '[plugins]\nfile = good.so\n[contact]\nlaw = own\n' >"$folder/bad.ini"
@@ -210,16 +197,16 @@ done
 compile spring bad.so
 plugin 'a law of a built-in name' 'the law spring of mine is there already' bad.so
 printf '[plugins]\nfile = good.so\nfile = good.so\n' >"$folder/bad.ini"
-refuse 'a plugin twice' 'bad.ini:3: plugins.file: the law own of mine is there already' "$bin/ethd-check" "$folder/bad.ini"
+bad 'a plugin twice' 'bad.ini:3: plugins.file: the law own of mine is there already' "$bin/ethd-check" "$folder/bad.ini"
 
 # ---- a stack of 64 kB: it is widened where that is allowed (root), else one line says so ----
 for command in 'ethd-tap --taps 1' 'ethd-run --virtual --duration 0.2' "ethd-check $folder/good.ini" 'ethd-check --laws'; do
   for as in "" "setpriv --bounding-set -sys_resource --inh-caps -sys_resource"; do
     [ -z "$as" ] || $as true 2>/dev/null || continue
-    (ulimit -s 64 && exec $as "$bin"/$command) >"$folder/stdout" 2>"$folder/stderr" </dev/null
+    (ulimit -s 64 && exec $as "$bin"/$command) >"$folder/out" 2>"$folder/err" </dev/null
     code=$?
-    [ $code = 0 ] || { [ $code = 1 ] && grep -q ': the stack may have 64 kB, 1024 are needed: ulimit -s 1024$' "$folder/stderr" && [ "$(wc -l <"$folder/stderr")" = 1 ]; } ||
-      fail "a stack of 64 kB: $command: exit $code: $(cat "$folder/stderr")"
+    [ $code = 0 ] || { [ $code = 1 ] && grep -q ': the stack may have 64 kB, 1024 are needed: ulimit -s 1024$' "$folder/err" && [ "$(wc -l <"$folder/err")" = 1 ]; } ||
+      fail "a stack of 64 kB: $command: exit $code: $(cat "$folder/err")"
     [ -z "$as" ] || [ $code = 1 ] || fail "a stack of 64 kB, which can't be widened: $command: exit $code"
   done
 done

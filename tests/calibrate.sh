@@ -5,15 +5,6 @@ program=$BUILD/bin/ethd-calibrate
 tests=$(cd "$(dirname "$0")" && pwd)
 cd "$folder" || exit 1
 
-# refuse CODE 'PATTERN' ARGUMENTS...
-refuse() {
-  expected=$1 pattern=$2
-  shift 2
-  "$program" "$@" >out 2>err </dev/null
-  code=$?
-  [ $code = "$expected" ] || fail "$*: exit $code: $(cat err)"
-  grep -q -e "$pattern" err || fail "$*: no $pattern in: $(cat err)"
-}
 
 for seed in 1 2 3; do
   "$program" --self-test --seed $seed --record counts.csv --csv points.csv --out ring.ini --serial 'ring 7' >self ||
@@ -37,20 +28,21 @@ sed '2d' counts.csv >unempty.csv
 sed '5s/^\([^,]*\),/9,/' counts.csv >far.csv
 cut -d, -f1-19 counts.csv >narrow.csv
 sed '4s/,[^,]*$/,70000/' counts.csv >much.csv
-refuse 2 'one of --port, --in and --self-test is needed'
-refuse 2 'one of --port, --in and --self-test is needed' --self-test --in counts.csv
-refuse 2 '--level: found "best"' --self-test --level best
-refuse 2 '--plot draws the file of --csv' --self-test --plot x.png
-refuse 2 '--rod: a rod thinner than the ring is needed' --self-test --rod 0.02
-refuse 2 '--serial: found' --self-test --serial 'a;b'
-refuse 2 'short.csv: 0 rows; the empty ring and places are needed' --in short.csv
-refuse 2 'unempty.csv:2: the empty ring, rod_m 0, comes first' --in unempty.csv
-refuse 2 'far.csv:5: the empty ring' --in far.csv
-refuse 2 'narrow.csv:1: the column c15 is missing' --in narrow.csv
-refuse 2 'much.csv:4: c15: found 70000, 0 to 65535 is allowed' --in much.csv
-refuse 2 'nowhere.csv: No such file' --in nowhere.csv
-refuse 1 'nowhere: No such file' --port nowhere
-refuse 1 "isn't a serial line" --port /dev/null
+try=yes
+refuse 2 'one of --port, --in and --self-test is needed' "$program"
+refuse 2 'one of --port, --in and --self-test is needed' "$program" --self-test --in counts.csv
+refuse 2 '--level: found "best"' "$program" --self-test --level best
+refuse 2 '--plot draws the file of --csv' "$program" --self-test --plot x.png
+refuse 2 '--rod: a rod thinner than the ring is needed' "$program" --self-test --rod 0.02
+refuse 2 '--serial: found' "$program" --self-test --serial 'a;b'
+refuse 2 'short.csv: 0 rows; the empty ring and places are needed' "$program" --in short.csv
+refuse 2 'unempty.csv:2: the empty ring, rod_m 0, comes first' "$program" --in unempty.csv
+refuse 2 'far.csv:5: the empty ring' "$program" --in far.csv
+refuse 2 'narrow.csv:1: the column c15 is missing' "$program" --in narrow.csv
+refuse 2 'much.csv:4: c15: found 70000, 0 to 65535 is allowed' "$program" --in much.csv
+refuse 2 'nowhere.csv: No such file' "$program" --in nowhere.csv
+refuse 1 'nowhere: No such file' "$program" --port nowhere
+refuse 1 "isn't a serial line" "$program" --port /dev/null
 
 "$PYTHON" "$tests/calibrate_guided.py" "$program" || fail "the guided session"
 exit $failed

@@ -7,20 +7,14 @@ printf 'wait 0.5\ntransition smooth\nset contact.k_e 2000\nwait 9\n' |
 "$convert" "$folder/rec" "$folder/rec.csv" >"$folder/log" 2>&1 || fail "rec.csv: $(cat "$folder/log")"
 
 # ---- refusals: one line, and what was there stays ----
-refuse() { # PATTERN ARGUMENTS...
-  pattern=$1
-  shift
-  "$convert" "$@" >"$folder/log" 2>&1
-  code=$?
-  [ $code = 2 ] && grep -q -e "$pattern" "$folder/log" || fail "$*: exit $code: $(cat "$folder/log")"
-}
-refuse 'ends in .csv or .mcap' "$folder/rec" "$folder/rec.txt"
-refuse 'tick.npy' "$folder/nowhere" "$folder/x.csv"
-refuse 'are needed' "$folder/rec"
+try=yes
+refuse 2 'ends in .csv or .mcap' "$convert" "$folder/rec" "$folder/rec.txt"
+refuse 2 'tick.npy' "$convert" "$folder/nowhere" "$folder/x.csv"
+refuse 2 'are needed' "$convert" "$folder/rec"
 cp -r "$folder/rec" "$folder/cut"
 truncate -s 1000 "$folder/cut/tick.npy"
 echo old >"$folder/old.csv"
-refuse 'tick.npy' "$folder/cut" "$folder/old.csv"
+refuse 2 'tick.npy' "$convert" "$folder/cut" "$folder/old.csv"
 [ "$(cat "$folder/old.csv")" = old ] || fail "a failed conversion left its mark"
 
 # ---- CSV: what the recording holds; ethd-replay reads it, and answers as the recorded controller did ----

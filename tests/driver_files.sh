@@ -1,12 +1,9 @@
 #!/bin/sh
 # Drivers in files of their own, [device] driver = file:NAME.so: one that is compiled against the installed headers behaves as
 # the built-in one; several stand behind one device; bad ones get one line and nothing moves; a received folder loads none.
-set -u
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+. tests/begin.sh
+work=$folder
 bin=$BUILD/bin
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 prefix=$work/usr
 $MAKE --no-print-directory -s B="$BUILD" DESTDIR= PREFIX="$prefix" install-files >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 export PKG_CONFIG_PATH="$prefix/lib/pkgconfig"
@@ -134,9 +131,7 @@ checked driver_hangs_limits 1 "open of the driver broken doesn't return" --open
 
 words() { # DRIVERS KEYS PATTERN
   printf '[device]\ndriver = %s\n%b' "$1" "$2" >"$work/bad.ini"
-  "$bin/ethd-run" --config "$work/bad.ini" --virtual --duration 1 >"$work/out" 2>"$work/err" </dev/null
-  code=$?
-  [ $code = 2 ] && [ "$(wc -l <"$work/err")" = 1 ] && grep -q -e "$3" "$work/err" || fail "$1: exit $code: $(cat "$work/err")"
+  refuse 2 "$3" "$bin/ethd-run" --config "$work/bad.ini" --virtual --duration 1
 }
 echo 'no program' >"$work/text.so"
 head -c 3000 "$work/hello.so" >"$work/cut.so"

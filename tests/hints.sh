@@ -5,7 +5,6 @@
 [ -z "${SAN:-}" ] || { echo "SKIP: plugins are built without the sanitizer"; exit 77; }
 tree=$PWD
 export PATH="$BUILD/bin:$PATH"
-fail() { printf 'FAILED %s\n' "$*"; failed=1; }
 cd "$folder" || exit 1
 says() { # EXIT PATTERN COMMAND...: one line on stderr, or a second one of argp
   wanted=$1 pattern=$2

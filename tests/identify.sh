@@ -11,17 +11,6 @@ if [ -n "${PLANTS:-}" ]; then
   exec "$PYTHON" "$tests/identify_plants.py" "$bin" "$tests/../apps/config" "$PLANTS" 5 "${SECONDS_EACH:-12}"
 fi
 
-# refuse CODE 'PATTERN' ARGUMENTS...: one line, nothing written
-refuse() {
-  expected=$1 pattern=$2
-  shift 2
-  "$bin/ethd-identify" "$@" --out none.plant >out 2>err </dev/null
-  code=$?
-  [ $code = "$expected" ] || fail "$*: exit $code: $(cat err)"
-  [ "$(grep -vc '^Try ' err)" = 1 ] || fail "$*: $(wc -l <err) lines: $(cat err)"
-  grep -q -e "$pattern" err || fail "$*: no $pattern in: $(cat err)"
-  [ ! -e none.plant ] || fail "$*: something was written"
-}
 
 # A recording, which repeats to the bit and keeps its box; the same input gives the same plant.
 printf '[device]\nplant = n\n' >n.ini
@@ -90,28 +79,30 @@ wait $live || fail "excite until a signal: exit $?: $(cat err)"
 sed -n 1p said | grep -q '^torques up to' && sed -n 3p said | grep -q '^dry run .*simulated' || fail "what will be done comes first: $(cat said)"
 grep -q ',end,closed' live/events.csv && "$bin/ethd-replay" --verify live >/dev/null || fail "the recording isn't whole"
 
+identify() { "$bin/ethd-identify" "$@" --out none.plant; }
+kept=none.plant try=yes
 mkdir empty
-refuse 2 'no recording' empty
+refuse 2 'no recording' identify empty
 mkdir still && sed 's/x/x/' sines/config.ini >still/config.ini && cp sines/events.csv still &&
   "$PYTHON" -c 'import numpy as n; r = n.load("sines/tick.npy"); r["q"][:] = r["q"][0]; n.save("still/tick.npy", r)'
-refuse 2 'hardly moves.*record' still
+refuse 2 'hardly moves.*record' identify still
 "$bin/ethd-run" --virtual --duration 1 --record short >/dev/null </dev/null
-refuse 2 'windows of .*are needed; record more' short
+refuse 2 'windows of .*are needed; record more' identify short
 for what in 'no_numbers:r["q"][:] = n.nan' 'uneven:r["time_ns"] *= 2'; do
   name=${what%%:*}
   cp -r sines "$name" && "$PYTHON" -c "import numpy as n; r = n.load('sines/tick.npy'); ${what#*:}; n.save('$name/tick.npy', r)"
 done
-refuse 2 "aren't numbers: .*record" no_numbers
-refuse 2 "don't come 0.001 s after the one before.*record" uneven
+refuse 2 "aren't numbers: .*record" identify no_numbers
+refuse 2 "don't come 0.001 s after the one before.*record" identify uneven
 mkdir clipped && cp sines/config.ini sines/events.csv clipped &&
   "$PYTHON" -c 'import numpy as n; r = n.load("sines/tick.npy"); r["guard"][:] = 2; n.save("clipped/tick.npy", r)'
-refuse 2 'the guard cut the torque in 100 %.*record' clipped
+refuse 2 'the guard cut the torque in 100 %.*record' identify clipped
 cp -r sines other && sed -i 's/^\[tracking\]/[arm]\nlink1 = 0.3\n[tracking]/' other/config.ini
-refuse 2 'of another arm' sines other
-refuse 2 'two devices are mixed' sines arm
+refuse 2 'of another arm' identify sines other
+refuse 2 'two devices are mixed' identify sines arm
 sed '/^mass_x/s/0.1173/0.1290/' "$bin/../share/ethd/n.plant" >heavy.plant
 printf '[device]\nplant = heavy.plant\n' >heavy.ini
 "$bin/ethd-identify" --excite --virtual --config heavy.ini --duration 6.158 --record heavy >/dev/null || fail "excite heavy: exit $?"
-refuse 2 'heavy: of another device than the rest, by itself its mass is 10 % more: .*record' sines heavy
-refuse 2 'needs --record\|excite needs' --excite
+refuse 2 'heavy: of another device than the rest, by itself its mass is 10 % more: .*record' identify sines heavy
+refuse 2 'needs --record\|excite needs' identify --excite
 exit $failed

@@ -5,37 +5,29 @@
 bin=$BUILD/bin
 cd "$folder" || exit 1
 
-# refuse PATTERN COMMAND...: exit 2 and one line, before anything is worked out
-refuse() {
-  pattern=$1
-  shift
-  "$@" >out 2>err </dev/null
-  code=$?
-  [ $code = 2 ] && [ "$(wc -l <err)" = 1 ] && grep -q -e "$pattern" err || fail "$*: exit $code: $(cat err)"
-}
 
 # ---- an output that is an input, or another output ----
 "$bin/ethd-identify" --excite --virtual --duration 6.158 --record sines >said || fail "a recording: exit $?"
 cp "$bin/../share/ethd/n.plant" mine.plant
 find . -type f ! -name out ! -name err ! -name before -exec md5sum {} + | sort >before
 identify="$bin/ethd-identify sines --base mine.plant"
-refuse 'out: mine.plant is the file of --base, which is only read' $identify --out mine.plant
-refuse 'csv: ./mine.plant is the file of --base' $identify --csv ./mine.plant
+refuse 2 'out: mine.plant is the file of --base, which is only read' $identify --out mine.plant
+refuse 2 'csv: ./mine.plant is the file of --base' $identify --csv ./mine.plant
 for file in tick.npy config.ini events.csv; do
-  refuse "out: sines/$file belongs to the recording sines, which is only read" $identify --out "sines/$file"
+  refuse 2 "out: sines/$file belongs to the recording sines, which is only read" $identify --out "sines/$file"
 done
-refuse 'plot: sines/events.csv belongs to the recording' $identify --plot sines/events.png
-refuse 'csv: ./fit is the file of --out, too' $identify --out fit --csv ./fit
+refuse 2 'plot: sines/events.csv belongs to the recording' $identify --plot sines/events.png
+refuse 2 'csv: ./fit is the file of --out, too' $identify --out fit --csv ./fit
 ln -s events.csv sines/other
-refuse 'csv: sines/other belongs to the recording' $identify --csv sines/other
+refuse 2 'csv: sines/other belongs to the recording' $identify --csv sines/other
 rm sines/other
 cp "$bin/../share/ethd/n.ini" "$bin/../share/ethd/wall.scene" .
 md5sum ./n.ini ./wall.scene >>before
 tune="$bin/ethd-tune --plant mine.plant --config n.ini --points 8 --taps 20"
-refuse 'plot: found "mine.plant", a file .png is needed' $tune --csv x.csv --plot mine.plant
-refuse 'csv: ./x is the file of --out, too' $tune --out x --csv ./x
-refuse 'plot: x.png is the file of --csv, too' $tune --csv x.png --plot x.png
-refuse 'plot: ring.png is the file of --csv, too' "$bin/ethd-calibrate" --self-test --csv ring.png --plot ring.png
+refuse 2 'plot: found "mine.plant", a file .png is needed' $tune --csv x.csv --plot mine.plant
+refuse 2 'csv: ./x is the file of --out, too' $tune --out x --csv ./x
+refuse 2 'plot: x.png is the file of --csv, too' $tune --csv x.png --plot x.png
+refuse 2 'plot: ring.png is the file of --csv, too' "$bin/ethd-calibrate" --self-test --csv ring.png --plot ring.png
 md5sum --quiet -c before || fail "an input was changed"
 # devices take what several write
 "$bin/ethd-identify" sines --base mine.plant --out /dev/null --csv /dev/null >said 2>err || fail "/dev/null twice: $(cat err)"

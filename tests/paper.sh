@@ -5,7 +5,6 @@
 bin=$BUILD/bin
 share=$BUILD/share/ethd
 cd "$folder" || exit 1
-fail() { echo "FAILED: $*"; failed=1; }
 
 for plant in q n p; do
   "$bin/ethd-tap" --paper --plant $plant --taps 40 --seed 5 >$plant.txt 2>err || fail "--paper: $(cat err)"
@@ -125,14 +124,8 @@ sed 's/late3/late7/' late3.ini >late7.ini
 "$bin/ethd-tap" --paper --plant ./late7 --taps 10 >late7.txt 2>err || fail "7 ms: $(cat err)"
 grep -q '^gains  first B_t  *1  at least 1.2 .*MISSED' late7.txt || fail "without rest: $(grep B_t late7.txt)"
 
-refuse() { # TEXT ARGUMENTS...
-  text=$1
-  shift
-  "$bin/ethd-tap" --paper "$@" >out 2>err
-  is=$?
-  [ $is = 2 ] && grep -q -- "$text" err || fail "$* gives $is: $(cat err)"
-}
-refuse 'sets laws, speeds and a simulated hand' --csv x.csv
-refuse 'sets laws, speeds and a simulated hand' --speed low
-refuse 'none.ini: No such file' --plant ./none
+try=yes
+refuse 2 'sets laws, speeds and a simulated hand' "$bin/ethd-tap" --paper --csv x.csv
+refuse 2 'sets laws, speeds and a simulated hand' "$bin/ethd-tap" --paper --speed low
+refuse 2 'none.ini: No such file' "$bin/ethd-tap" --paper --plant ./none
 exit $failed

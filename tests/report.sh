@@ -243,33 +243,27 @@ drawn "$folder/other2" "$folder/ticks" --tap "${chosen% *}" --point 1 --out "$fo
 [ "$(ls "$folder"/other2/trace-*.png)" = "$folder/other2/trace-${chosen#* }.png" ] || fail "other taps than the chosen one are drawn"
 
 # ---- refusals ----
-refuse() { # CODE PATTERN ARGUMENTS...
-  wanted=$1 pattern=$2
-  shift 2
-  "$report" "$@" >"$folder/out" 2>"$folder/err"
-  code=$?
-  [ $code = "$wanted" ] && [ "$(wc -l <"$folder/err")" -le 2 ] && grep -q -e "$pattern" "$folder/err" || fail "$pattern: exit $code: $(cat "$folder/err")"
-}
+try=yes
 bad() { # SED PATTERN: a table that was changed
   rm -rf "$folder/bad"
   cp -r "$folder/grid" "$folder/bad"
   sed -i "$1" "$folder/bad/taps.csv"
-  refuse 2 "$2" "$folder/bad"
+  refuse 2 "$2" "$report" "$folder/bad"
 }
-refuse 2 'DIR is needed'
-refuse 2 'P01 has tapped there and in' "$here" "$here" --out "$folder/both" --force
-refuse 2 'nowhere/study.ini: No such file' "$folder/nowhere"
-refuse 2 'no test tap at point 9 of 4' "$folder/grid" --point 9
-refuse 1 'no test tap P09-01-001' "$here" --force --tap P09-01-001
-refuse 2 "report: holds .* already; --force" "$here"
-refuse 2 "is the study's own folder" "$here" --out "$here" --force
+refuse 2 'DIR is needed' "$report"
+refuse 2 'P01 has tapped there and in' "$report" "$here" "$here" --out "$folder/both" --force
+refuse 2 'nowhere/study.ini: No such file' "$report" "$folder/nowhere"
+refuse 2 'no test tap at point 9 of 4' "$report" "$folder/grid" --point 9
+refuse 1 'no test tap P09-01-001' "$report" "$here" --force --tap P09-01-001
+refuse 2 "report: holds .* already; --force" "$report" "$here"
+refuse 2 "is the study's own folder" "$report" "$here" --out "$here" --force
 bad '3s/,ok,/,fine,/' 'taps.csv:[0-9]*: reason: found "fine"\|'
 bad '1s/,reason,/,why,/' 'taps.csv:1: no column reason'
 bad '4s/$/,1/' 'taps.csv:4: found 36 cells, 35 are allowed'
 bad 's/,ok,/,ok,x/' 'taps.csv:[0-9]*: v_rvo_mps: found "x'
 bad '2,$d' 'no test tap'
 rm "$folder/bad/taps.csv"
-refuse 2 'taps.csv: No such file; ethd-study --resume' "$folder/bad"
+refuse 2 'taps.csv: No such file; ethd-study --resume' "$report" "$folder/bad"
 echo untouched >"$folder/grid/report/report.html"
 (ulimit -f 100; exec "$report" --force "$folder/grid") >"$folder/out" 2>"$folder/err" && fail "a quota for the page"
 [ "$(cat "$folder/grid/report/report.html")" = untouched ] || fail "a page that was cut"

@@ -197,31 +197,24 @@ $verify "$folder/thin" >"$folder/verify" 2>&1
 says "$folder/verify" "thin: [0-9]* of $rows ticks are equal to the bit, the rest can't be replayed: 1 tick of 10 is recorded"
 
 # ---- refusals ----
-refuse() { # PATTERN ARGUMENTS...
-  pattern=$1
-  shift
-  "$run" "$@" </dev/null >"$folder/out" 2>"$folder/err"
-  code=$?
-  [ $code = 2 ] && [ "$(grep -c . "$folder/err")" -le 2 ] && grep -q -e "$pattern" "$folder/err" ||
-    fail "$*: exit $code: $(cat "$folder/err")"
-}
+try=yes
 printf '[device]\ndriver = nothing\n' >"$folder/bad.ini"
 printf '[device]\nseed = -1\n' >"$folder/seed.ini"
-refuse 'bad.ini: device.driver: found "nothing"; sim' --config "$folder/bad.ini"
-refuse 'seed.ini:2: .*seed' --config "$folder/seed.ini"
-refuse 'duration: found "0"' --duration 0
-refuse 'virtual needs --duration' --virtual
-refuse 'telemetry: found "nowhere"' --telemetry nowhere --virtual --duration 1
+refuse 2 'bad.ini: device.driver: found "nothing"; sim' "$run" --config "$folder/bad.ini"
+refuse 2 'seed.ini:2: .*seed' "$run" --config "$folder/seed.ini"
+refuse 2 'duration: found "0"' "$run" --duration 0
+refuse 2 'virtual needs --duration' "$run" --virtual
+refuse 2 'telemetry: found "nowhere"' "$run" --telemetry nowhere --virtual --duration 1
 for port in 0 99999 65536; do
-  refuse "telemetry: found \"127.0.0.1:$port\"; a port from 1 to 65535" --telemetry 127.0.0.1:$port --virtual --duration 1
+  refuse 2 "telemetry: found \"127.0.0.1:$port\"; a port from 1 to 65535" "$run" --telemetry 127.0.0.1:$port --virtual --duration 1
 done
 for address in 239.1.2.3:9870 255.255.255.255:9870 '[ff02::1]:9870'; do
-  refuse "telemetry: .* a group address; allow it with --telemetry-group" --telemetry "$address" --virtual --duration 1
+  refuse 2 "telemetry: .* a group address; allow it with --telemetry-group" "$run" --telemetry "$address" --virtual --duration 1
 done
 
 # ---- a folder of output is never replaced in silence ----
 before=$(md5sum "$folder/v1/tick.npy")
-refuse 'v1: holds .* already; --force' --virtual --duration 1 --record "$folder/v1"
+refuse 2 'v1: holds .* already; --force' "$run" --virtual --duration 1 --record "$folder/v1"
 [ "$(md5sum "$folder/v1/tick.npy")" = "$before" ] || fail "a recording was written over"
 "$run" --virtual --duration 1 --record "$folder/v2" --force </dev/null >"$folder/out" 2>&1 || fail "--force: $(cat "$folder/out")"
 replays "$folder/v2"
@@ -233,14 +226,14 @@ cp "$folder/own/config.ini" "$folder/before"
 (cd "$folder/own" && "$run" --virtual --duration 1 --config config.ini --record . --force </dev/null) >"$folder/out" 2>&1 &&
   fail "recorded over its own configuration"
 says "$folder/out" 'the recorded input comes from this folder'
-refuse 'own: holds files named like those of a recording, but no recording' --virtual --duration 1 --record "$folder/own" --force
+refuse 2 'own: holds files named like those of a recording, but no recording' "$run" --virtual --duration 1 --record "$folder/own" --force
 cmp "$folder/own/config.ini" "$folder/before" || fail "the configuration was changed"
 # two at once: one records, the other is told
 (sleep 2) | "$run" --virtual --duration 1000000 --record "$folder/two" >"$folder/first" 2>&1 &
 first=$!
 while ! [ -s "$folder/two/events.csv" ]; do sleep 0.02; done
-refuse 'two: another program is writing there' --virtual --duration 1 --record "$folder/two"
-refuse 'two: another program is writing there' --virtual --duration 1 --record "$folder/two" --force
+refuse 2 'two: another program is writing there' "$run" --virtual --duration 1 --record "$folder/two"
+refuse 2 'two: another program is writing there' "$run" --virtual --duration 1 --record "$folder/two" --force
 kill -TERM $first
 wait $first 2>/dev/null
 
@@ -255,7 +248,7 @@ says "$folder/err" 'the snapshot: .*earlier.npy: File too large'
 
 # one that only a pipe's reader would let through isn't begun
 mkfifo "$folder/pipe"
-refuse 'snapshot: .*pipe: isn.t a file' --virtual --duration 1 --snapshot "$folder/pipe"
+refuse 2 'snapshot: .*pipe: isn.t a file' "$run" --virtual --duration 1 --snapshot "$folder/pipe"
 
 # ---- a disk that is full: said at once, counted, marked, exit 1 ----
 for limit in 1000 1; do
@@ -268,15 +261,15 @@ done
 says "$folder/err" 'File too large'
 (ulimit -f 1000; exec "$run" --virtual --duration 5 --record "$folder/full" </dev/null) >"$folder/out" 2>"$folder/err"
 says "$folder/err" 'full/tick.npy: File too large; ticks from [0-9]* on are lost$'
-kept=$(sed -n 's/.*ticks from \([0-9]*\) on.*/\1/p;' "$folder/err" | head -n 1)
-says "$folder/out" "^recorded  *.*full: $kept of [0-9]* ticks, [0-9]* are lost\$"
-says "$folder/full/events.csv" "^$kept,fault,the recorder lost rows: File too large\$"
+whole=$(sed -n 's/.*ticks from \([0-9]*\) on.*/\1/p;' "$folder/err" | head -n 1)
+says "$folder/out" "^recorded  *.*full: $whole of [0-9]* ticks, [0-9]* are lost\$"
+says "$folder/full/events.csv" "^$whole,fault,the recorder lost rows: File too large\$"
 $verify "$folder/full" >"$folder/verify" 2>&1
 [ $? = 1 ] || fail "half a recording counts as whole"
-says "$folder/verify" "full: $kept ticks, equal to the bit, but the recording was never closed"
+says "$folder/verify" "full: $whole ticks, equal to the bit, but the recording was never closed"
 replays "$folder/v1"
-refuse 'cpu: found "x"' --cpu x
-refuse 'early_wake' --early-wake 900 --duration 1
+refuse 2 'cpu: found "x"' "$run" --cpu x
+refuse 2 'early_wake' "$run" --early-wake 900 --duration 1
 
 # ---- a device that doesn't start: which device, which step ----
 echo '0 start fail' >"$folder/start.inject"

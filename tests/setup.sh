@@ -3,7 +3,6 @@
 # to do stand in a few lines; objects are linked in one order, whatever the locale.
 # apt-get, sudo and id are stubs here; nothing is installed.
 . tests/begin.sh
-fail() { printf 'FAILED %s\n' "$*"; failed=1; }
 mkdir "$folder/bin"
 for place in /usr/bin /bin; do ln -s $place/* "$folder/bin" 2>/dev/null; done
 rm -f "$folder"/bin/apt* "$folder"/bin/dpkg* "$folder/bin/sudo" "$folder/bin/id"

@@ -68,34 +68,28 @@ simulate --ticks --shard 7/7 --out "$folder/ticks" >/dev/null || fail "--ticks"
 tap=$(ls "$folder/ticks/taps-7-of-7" | tail -n 1)
 "$BUILD/bin/ethd-replay" --verify "$folder/ticks/taps-7-of-7/$tap" >"$folder/out" 2>&1 || fail "$tap: $(cat "$folder/out")"
 
-refuse() { # PATTERN COMMAND...
-  pattern=$1
-  shift
-  "$@" >"$folder/out" 2>"$folder/err" </dev/null
-  code=$?
-  [ $code != 0 ] && [ "$(wc -l <"$folder/err")" -le 2 ] && grep -q -e "$pattern" "$folder/err" || fail "$pattern: exit $code: $(cat "$folder/err")"
-}
+try=yes
 rm "$folder/killed/shard-1-of-2.sqlite"
-refuse 'killed/shard-1-of-2.sqlite: missing' "$study" --merge "$folder/killed"
-refuse 'shards of ' sh -c "cp '$folder/one/shard-1-of-1.sqlite' '$folder/killed' && '$study' --merge '$folder/killed'"
+refuse 1 'killed/shard-1-of-2.sqlite: missing' "$study" --merge "$folder/killed"
+refuse 1 'shards of ' sh -c "cp '$folder/one/shard-1-of-1.sqlite' '$folder/killed' && '$study' --merge '$folder/killed'"
 rm "$folder/ticks/shard-7-of-7.sqlite"
-refuse 'no shard-i-of-n.sqlite' "$study" --merge "$folder/ticks"
+refuse 1 'no shard-i-of-n.sqlite' "$study" --merge "$folder/ticks"
 cp "$folder/slurm/shard-1-of-3.sqlite" "$folder/first"
 cp "$folder/first" "$folder/slurm/shard-2-of-3.sqlite"
-refuse 'shard-2-of-3.sqlite: has rows of another shard' "$study" --merge "$folder/slurm"
+refuse 1 'shard-2-of-3.sqlite: has rows of another shard' "$study" --merge "$folder/slurm"
 cp "$folder/first" "$folder/slurm/shard-1-of-3.sqlite"
 "$python3" -c 'import sqlite3, sys; db = sqlite3.connect(sys.argv[1]); db.execute("DELETE FROM tap WHERE point = 3 AND participant > 4"); db.commit()' "$folder/slurm/shard-1-of-3.sqlite"
-refuse 'shard-1-of-3.sqlite: has [0-9]* of its 10 participants' "$study" --merge "$folder/slurm"
+refuse 1 'shard-1-of-3.sqlite: has [0-9]* of its 10 participants' "$study" --merge "$folder/slurm"
 printf '[study]\nseed = 2\n' >"$folder/other.study"
 "$study" "$folder/other.study" --simulate 3 --out "$folder/other" >"$folder/out" 2>&1 || fail "another study: $(cat "$folder/out")"
 cp "$folder/other/shard-1-of-1.sqlite" "$folder/one/shard-1-of-3.sqlite"
-refuse 'begun with other files' simulate --shard 1/3 --out "$folder/one"
-refuse 'holds study.ini, of another study' "$study" "$folder/other.study" --simulate 3 --out "$folder/one"
-refuse 'holds a simulation' "$study" --resume "$folder/one"
-refuse 'holds a simulation' "$study" --resume "$folder/one" --exclude 1 --reason x
-refuse 'shard: found "3"' simulate --shard 3/2 --out "$folder/x"
-refuse 'shard: found "2"' simulate --shard 2 --out "$folder/x"
-refuse 'need --simulate' "$study" --shard 1/2 --out "$folder/x"
+refuse 1 'begun with other files' simulate --shard 1/3 --out "$folder/one"
+refuse 2 'holds study.ini, of another study' "$study" "$folder/other.study" --simulate 3 --out "$folder/one"
+refuse 2 'holds a simulation' "$study" --resume "$folder/one"
+refuse 2 'holds a simulation' "$study" --resume "$folder/one" --exclude 1 --reason x
+refuse 2 'shard: found "3"' simulate --shard 3/2 --out "$folder/x"
+refuse 2 'shard: found "2"' simulate --shard 2 --out "$folder/x"
+refuse 2 'need --simulate' "$study" --shard 1/2 --out "$folder/x"
 
 # ---- mpirun last: it may be absent ----
 if command -v mpirun >/dev/null; then

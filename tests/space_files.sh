@@ -33,30 +33,23 @@ page 'at 0.4 m/s  *22.400 mm of the gap of 10.500 mm: the finger arrives before 
 page 'space.speed is higher'
 page '^2 bounds exceeded$'
 
-refused() { # PATTERN PROGRAM ARGUMENTS...
-  pattern=$1 program=$2
-  shift 2
-  "$bin/$program" "$@" >"$folder/out" 2>"$folder/err" </dev/null
-  code=$?
-  [ $code = 2 ] && [ "$(wc -l <"$folder/err")" = 1 ] && grep -q -e "$pattern" "$folder/err" || fail "$program $*: exit $code: $(cat "$folder/err")"
-}
-refused 'space.ini: \[space\] is there; the figures are for the plane' ethd-check --delay 1 $ini
+refuse 2 'space.ini: \[space\] is there; the figures are for the plane' "$bin/ethd-check" --delay 1 $ini
 what='space.ini: \[space\] is for a device in space, and this program works in the plane'
-refused 'space.ini: device.driver: sim has no part in a device in space' ethd-run --virtual --duration 1 --config $ini
-refused "$what" ethd-tap --config $ini
-refused "$what" ethd-tune --config $ini
-refused "$what" ethd-replay --config $ini --in $ini --out "$folder/x.csv"
-refused "$what" ethd-scene info apps/config/room.scene --config $ini
+refuse 2 'space.ini: device.driver: sim has no part in a device in space' "$bin/ethd-run" --virtual --duration 1 --config $ini
+refuse 2 "$what" "$bin/ethd-tap" --config $ini
+refuse 2 "$what" "$bin/ethd-tune" --config $ini
+refuse 2 "$what" "$bin/ethd-replay" --config $ini --in $ini --out "$folder/x.csv"
+refuse 2 "$what" "$bin/ethd-scene" info apps/config/room.scene --config $ini
 
 # ---- ethd-scene ----
 "$bin/ethd-scene" info apps/config/room.solids >"$folder/page" || fail "ethd-scene: $(cat "$folder/page")"
 page 'room.solids: 4 solids$'
 page 'extent:  *x 0.26 to 0.679282032 m, y -0.34 to 0.28 m, z 0 to 0.3 m, without half-spaces'
-refused 'holds solids; --plot and --config are for scenes of the plane' ethd-scene info apps/config/room.solids --plot "$folder/x.png"
+refuse 2 'holds solids; --plot and --config are for scenes of the plane' "$bin/ethd-scene" info apps/config/room.solids --plot "$folder/x.png"
 printf 'sphere 0 0 0 1\nball 0 0 0 1\n' >"$folder/bad.solids"
-refused 'bad.solids:2: ball: an unknown name; halfspace, sphere, capsule, box, material are allowed' ethd-scene info "$folder/bad.solids"
+refuse 2 'bad.solids:2: ball: an unknown name; halfspace, sphere, capsule, box, material are allowed' "$bin/ethd-scene" info "$folder/bad.solids"
 printf 'x_m,y_m\n0,0\n' >"$folder/points.csv"
-refused 'room.solids: holds solids of space' ethd-scene query --scene apps/config/room.solids --in "$folder/points.csv" --out "$folder/x.csv"
+refuse 2 'room.solids: holds solids of space' "$bin/ethd-scene" query --scene apps/config/room.solids --in "$folder/points.csv" --out "$folder/x.csv"
 
 # ---- recordings ----
 "$BUILD/tests/space_tap" $ini "$folder/rec" || fail "no recording"
@@ -65,7 +58,7 @@ page 'rec: 4000 ticks, equal to the bit'
 sed 's/set,transition.effort 0.7/set,transition.effort 0.71/' "$folder/rec/events.csv" >"$folder/changed" && cp -r "$folder/rec" "$folder/other" && cp "$folder/changed" "$folder/other/events.csv"
 "$bin/ethd-replay" --verify "$folder/other" >"$folder/page" 2>&1 && fail "another gain verifies"
 page 'other: tick 2[0-9]*: .*: recorded '
-refused "config.ini: \[space\] is for a device in space" ethd-identify "$folder/rec" --out "$folder/x.plant"
+refuse 2 "config.ini: \[space\] is for a device in space" "$bin/ethd-identify" "$folder/rec" --out "$folder/x.plant"
 
 python3=$(sh .ci/setup python) || { echo "SKIP: no python3 with numpy"; exit 77; }
 "$bin/ethd-convert" "$folder/rec" "$folder/rec.csv" >"$folder/page" 2>&1 || fail "convert: $(cat "$folder/page")"

@@ -3,14 +3,6 @@
 . tests/begin.sh
 study=$BUILD/bin/ethd-study
 python3=${PYTHON:-python3}
-refuse() { # EXIT PATTERN COMMAND..: one line on stderr, and the folders $kept.. stay as they were
-  code=$1 pattern=$2
-  shift 2
-  "$@" >"$folder/out" 2>"$folder/err" </dev/null
-  got=$?
-  [ $got = "$code" ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q -e "$pattern" "$folder/err" ||
-    fail "$pattern: exit $got: $(cat "$folder/err")"
-}
 unchanged() { diff -r "$1" "$2" >"$folder/out" || fail "$3: $(head -n 3 "$folder/out")"; }
 
 printf '[study]\nname = small\nparticipants = 2\ntaps = 1\nattempts = 2\ntraining = 1\nsurvey = on\n' >"$folder/small.study"

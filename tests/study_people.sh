@@ -215,14 +215,11 @@ mkdir "$folder/elsewhere"
 (cd "$folder/elsewhere" && "$study" --resume "$folder/faulty" --virtual --quiet >"$folder/out" 2>"$folder/err") || fail "from elsewhere: $(cat "$folder/err")"
 
 # ---- what doesn't go together ----
-"$study" "$folder/people.study" --simulate 3 --out "$folder/x" >"$folder/out" 2>"$folder/err"
-[ $? = 2 ] && grep -q 'hand.source: people have hands of their own' "$folder/err" || fail "--simulate: $(cat "$folder/err")"
-"$study" --virtual --out "$folder/x" >"$folder/out" 2>"$folder/err"
-[ $? = 2 ] && grep -q 'people is needed' "$folder/err" || fail "--virtual: $(cat "$folder/err")"
+refuse 2 'hand.source: people have hands of their own' "$study" "$folder/people.study" --simulate 3 --out "$folder/x"
+refuse 2 'people is needed' "$study" --virtual --out "$folder/x"
 device odd.ini 'driver2 = 1\n'
 protocol odd.study odd.ini 1 off
-"$study" "$folder/odd.study" --out "$folder/x" --virtual >"$folder/out" 2>"$folder/err"
-[ $? = 2 ] && grep -q 'driver2' "$folder/err" || fail "a bad device: $(cat "$folder/err")"
+refuse 2 'driver2' "$study" "$folder/odd.study" --out "$folder/x" --virtual
 
 # An open device is brought to rest, whatever fails next.
 env -u DISPLAY -u WAYLAND_DISPLAY SDL_VIDEODRIVER=x11 "$study" "$folder/people.study" --out "$folder/dark" --screen >"$folder/out" 2>"$folder/err"

@@ -3,7 +3,6 @@
 set -eu
 . tests/begin.sh
 tap=$BUILD/bin/ethd-tap
-fail() { echo "$*"; exit 1; }
 
 # The same seed gives the same bytes; another one doesn't.
 "$tap" --taps 6 --csv "$folder/a.csv" >"$folder/a.txt"
@@ -122,53 +121,45 @@ grep -q ',ok,' "$folder/h.csv" || fail "$example: no valid tap"
 
 # Wrong usage and bad input: exit 2, one line, nothing written over.
 echo precious >"$folder/kept.csv"
-refuse() {
-  says=$1
-  shift
-  code=0
-  "$tap" --taps 1 --csv "$folder/kept.csv" "$@" >"$folder/out" 2>"$folder/err" || code=$?
-  [ $code = 2 ] || fail "exit $code, not 2: $*"
-  [ "$(wc -l <"$folder/err")" -le 2 ] || fail "more than a line: $*"
-  grep -q -- "$says" "$folder/err" || { cat "$folder/err"; fail "it doesn't say '$says': $*"; }
-  [ "$(cat "$folder/kept.csv")" = precious ] || fail "written over: $*"
-}
-refuse 'a whole number from 1' --taps 0
-refuse 'a whole number from 1' --taps 1.5
-refuse 'low, high and numbers' --speed fast
-refuse 'low, high and numbers' --speed nan
-refuse 'low, high and numbers' --speed 0
-refuse 'twice' --speed low,low
-refuse 'empty word' --transition offset,
-refuse 'abrupt' --transition bumpy
-refuse 'paper or finger' --validity hand
-refuse '1000' --learn 1001
-refuse 'section.key=value' --set force
-refuse 'foo.bar: unknown section' --set foo.bar=3
-refuse 'contact.k_ee: not a key of kelvin-voigt' --set contact.k_ee=3
-refuse 'arm.mas_x: unknown key' --set arm.mas_x=0.3
-refuse 'not a key of abrupt' --transition abrupt,smooth --set transition.b_d=50
-refuse 'mass_x' --set arm.mass_x=-1
-refuse 'range' --transition predictive --set transition.range=9
-refuse 'whole number from 0' --seed -1
-refuse 'no-such' --plant "$folder/no-such"
-refuse 'no-such' --config "$folder/no-such.ini"
-refuse 'no-such' --finger "$folder/no-such.csv"
-refuse 'need --finger' --scale 2
-refuse 'need --finger' --units cm
-refuse 'm, cm, mm or in' --finger "$folder/swing.csv" --units feet
-refuse 'those of time, x and y' --finger "$folder/swing.csv" --columns t_s
-refuse 'from 0.01 to 100' --finger "$folder/swing.csv" --scale 0
-refuse 'y_m' --finger "$folder/a.csv"
+kept=$folder/kept.csv* try=yes
+once() { "$tap" --taps 1 --csv "$folder/kept.csv" "$@"; }
+refuse 2 'a whole number from 1' once --taps 0
+refuse 2 'a whole number from 1' once --taps 1.5
+refuse 2 'low, high and numbers' once --speed fast
+refuse 2 'low, high and numbers' once --speed nan
+refuse 2 'low, high and numbers' once --speed 0
+refuse 2 'twice' once --speed low,low
+refuse 2 'empty word' once --transition offset,
+refuse 2 'abrupt' once --transition bumpy
+refuse 2 'paper or finger' once --validity hand
+refuse 2 '1000' once --learn 1001
+refuse 2 'section.key=value' once --set force
+refuse 2 'foo.bar: unknown section' once --set foo.bar=3
+refuse 2 'contact.k_ee: not a key of kelvin-voigt' once --set contact.k_ee=3
+refuse 2 'arm.mas_x: unknown key' once --set arm.mas_x=0.3
+refuse 2 'not a key of abrupt' once --transition abrupt,smooth --set transition.b_d=50
+refuse 2 'mass_x' once --set arm.mass_x=-1
+refuse 2 'range' once --transition predictive --set transition.range=9
+refuse 2 'whole number from 0' once --seed -1
+refuse 2 'no-such' once --plant "$folder/no-such"
+refuse 2 'no-such' once --config "$folder/no-such.ini"
+refuse 2 'no-such' once --finger "$folder/no-such.csv"
+refuse 2 'need --finger' once --scale 2
+refuse 2 'need --finger' once --units cm
+refuse 2 'm, cm, mm or in' once --finger "$folder/swing.csv" --units feet
+refuse 2 'those of time, x and y' once --finger "$folder/swing.csv" --columns t_s
+refuse 2 'from 0.01 to 100' once --finger "$folder/swing.csv" --scale 0
+refuse 2 'y_m' once --finger "$folder/a.csv"
 printf 'halfplane -1 0 0.9\n' >"$folder/far.scene"
 printf '[scene]\nfile = far.scene\n' >"$folder/far.ini"
 printf '[device]\ndriver = servo\n' >"$folder/far.ini"
-refuse 'far.ini:2: device.driver: found "servo", sim is allowed' --config "$folder/far.ini"
+refuse 2 'far.ini:2: device.driver: found "servo", sim is allowed' once --config "$folder/far.ini"
 printf '[device]\nplnt = n\n' >"$folder/far.ini"
-refuse 'far.ini:2: device.plnt: sim knows plant, ' --config "$folder/far.ini"
+refuse 2 'far.ini:2: device.plnt: sim knows plant, ' once --config "$folder/far.ini"
 printf '[device]\nplant = none\n' >"$folder/far.ini"
-refuse 'none.plant: No such file' --config "$folder/far.ini"
+refuse 2 'none.plant: No such file' once --config "$folder/far.ini"
 printf '[scene]\nfile = far.scene\n' >"$folder/far.ini"
-refuse 'no wall' --config "$folder/far.ini"
+refuse 2 'no wall' once --config "$folder/far.ini"
 
 # A signal: what was done is kept.
 "$tap" --taps 100000 --csv "$folder/cut.csv" --record "$folder/cut" >"$folder/out" 2>"$folder/err" &
@@ -182,4 +173,4 @@ grep -q 'what was done is kept' "$folder/err" || fail "it doesn't say that it wa
 [ "$(tail -n +2 "$folder/cut.csv" | awk -F, 'NF != 20' | wc -l)" = 0 ] || fail "a cut row"
 [ "$(wc -l <"$folder/cut.csv")" -gt 1 ] || fail "nothing was kept"
 "$BUILD/bin/ethd-replay" --verify "$folder/cut" >/dev/null
-exit 0
+exit $failed
