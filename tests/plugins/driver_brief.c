@@ -1,3 +1,0 @@
-/* A brief that would steer a terminal. */
-#define BRIEF "\033[2Jgone"
-#include "driver_broken.h"

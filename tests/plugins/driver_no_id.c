@@ -1,3 +1,0 @@
-/* No id at all. */
-#define ID NULL
-#include "driver_broken.h"

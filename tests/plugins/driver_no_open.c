@@ -1,3 +1,0 @@
-/* Nothing opens it. */
-#define OPEN NULL
-#include "driver_broken.h"
