@@ -12,12 +12,6 @@
 #ifndef ABI
 #define ABI ETHD_DRIVER_ABI
 #endif
-#ifndef ID
-#define ID "broken"
-#endif
-#ifndef BRIEF
-#define BRIEF "does nothing"
-#endif
 #ifndef OPEN
 static ethd_status open_broken(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
   (void)def, (void)message;
@@ -33,6 +27,7 @@ static ethd_status open_broken(const ethd_device_def *def, void **device, char m
 #define TABLE ethd_driver_plugin
 #endif
 ETHD_API extern const ethd_driver TABLE;
-const ethd_driver TABLE = {.size = SIZE, .abi = ABI, .id = ID, .brief = BRIEF, .open = OPEN, .close = free, MORE};
+const ethd_driver TABLE = {
+    .size = SIZE, .abi = ABI, .id = "broken", .brief = "does nothing", .open = OPEN, .close = free, MORE};
 
 #endif

@@ -98,6 +98,7 @@ static void expect_driver(const ethd_driver *driver, ethd_status status, const c
 TEST(test_drivers) {
   static const char *many[70];
   static const char *const odd[] = {"port", "Port", NULL}, *const words[] = {"port", NULL};
+  static const ethd_param out_of_range[] = {{"gain", "1", 0, 1, 7, "b"}};
   for (int i = 0; i < 66; i++) many[i] = "port";
   expect_driver(&sound, ETHD_OK, "");
   REFUSED(ETHD_OK, "", d.keys = words);
@@ -125,6 +126,10 @@ TEST(test_drivers) {
   REFUSED(ETHD_E_ARGUMENT, "the brief of sound isn't one line of 1 to 200 printable characters", d.brief = "a\nb");
   REFUSED(ETHD_E_ARGUMENT, "the brief of sound isn't one line of 1 to 200 printable characters", d.brief = "a\x7f");
   REFUSED(ETHD_E_TABLE, "sound: params: NULL, but 2 rows are promised", d.param_count = 2);
+  REFUSED(
+      ETHD_E_TABLE,
+      "sound: params: row 1, gain: found min 0, max 1, default 7; min <= default <= max and a finite min are needed",
+      d.params = out_of_range, d.param_count = 1);
   REFUSED(ETHD_E_TABLE, "sound: keys: not words, or no NULL behind them", d.keys = odd);
   REFUSED(ETHD_E_TABLE, "sound: keys: not words, or no NULL behind them", d.keys = many);
   REFUSED(ETHD_E_ARGUMENT, "sound has no open", d.open = NULL);
