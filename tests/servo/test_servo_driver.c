@@ -228,6 +228,20 @@ TEST(test_settings_refused) {
   ck_assert_msg(strstr(message, "127.0.0.1:1: Connection refused") != NULL, "%s", message);
 }
 
+/* A drive that answers no question well: one line names its port, and nothing was enabled. */
+TEST_LOOP(test_no_good_answer, 0, 6) {
+  static const mock_kind kinds[] = {MOCK_DROP, MOCK_CUT, MOCK_GARBLE, MOCK_RESET, MOCK_EXCEPTION, MOCK_EXCEPTION};
+  mock_start(&drive, 0);
+  ethd_setting settings[] = {{"map", "plant.map", 1}, {"port", drive.port, 2}};
+  spoil(UINT32_MAX, kinds[_i], _i == 4 ? 2 : 4);
+  ck_assert_int_eq(open_with(settings, 2), ETHD_E_DEVICE);
+  ck_assert_ptr_null(device);
+  ck_assert_msg(strstr(message, drive.port) && !strchr(message, '\n'), "%s", message);
+  ck_assert_uint_gt(drive.requests, 0);
+  ck_assert_int_eq(raw(MOCK_CONTROL) | raw(MOCK_TORQUE1) | raw(MOCK_TORQUE2), 0);
+  mock_stop(&drive);
+}
+
 /* ---- true time ---- */
 
 /* A drive that answers late has read its joints when the question came; the sample isn't stamped after that. */
