@@ -52,7 +52,7 @@ if command -v gnuplot >/dev/null; then
   "$BUILD/bin/ethd-report" "$folder/both" >"$folder/out" 2>&1 && grep -q "files are as SHA256SUMS says" "$folder/both/report/report.html" || fail "the report: $(cat "$folder/out")"
   "$study" --verify "$folder/both" >"$folder/out" 2>&1 || fail "sums beside a report: $(cat "$folder/out")"
   echo >>"$folder/both/taps/$(ls "$folder/both/taps" | head -n 1)/truth.npy"
-  "$BUILD/bin/ethd-report" "$folder/both" --force >"$folder/out" 2>&1 && grep -q "truth.npy isn&#39;t what it was" "$folder/both/report/report.html" ||
+  "$BUILD/bin/ethd-report" "$folder/both" --force >"$folder/out" 2>&1 && grep -q "truth.npy isn&#x27;t what it was" "$folder/both/report/report.html" ||
     fail "the report of a tap that was changed: $(cat "$folder/out")"
 fi
 exit $failed

@@ -70,9 +70,10 @@ def laws() -> List[Law]:
     return listed(lib.ethd_laws)
 
 
-def _made(kind: str, id: str, step: Callable[..., Any], brief: str, params: Dict[str, Any], numbers: int, alive: List[Any]) -> Law:
+def _made(kind: str, id: str, step: Callable[..., Any], brief: str, params: Dict[str, Any], numbers: int) -> Law:
     """The library's struct for a law whose C entry is `step`."""
     rows = [Param(name, *_row(name, value)) for name, value in params.items()]
+    alive: List[Any] = []
 
     def words(text: str) -> Any:
         alive.append(ffi.new("char[]", text.encode()))
@@ -101,10 +102,6 @@ def _row(name: str, value: Any) -> Tuple[str, float, float, float, str]:
         return str(unit), float(least), float(most), float(default), "of a law in Python"
     except (TypeError, ValueError):
         raise ValueError(f"{name}: found {value!r}; a number, or (default, least, most, unit), is allowed") from None
-
-
-def _numbers(p: Any, names: List[str]) -> Dict[str, float]:
-    return {name: p[i] for i, name in enumerate(names)}
 
 
 # A law is shown copies, which it may keep: the library's own memory is another contact's after the call, or gone.
@@ -137,9 +134,32 @@ def _state(block: Any, numbers: int) -> Iterator[Optional[NDArray[np.float64]]]:
         there[:] = own
 
 
-def _entry(signature: str, step: Callable[..., int]) -> Any:
-    """The C function that calls `step`; an exception in it sends the controller to its safe state."""
-    return ffi.callback(signature, step, error=lib.ETHD_E_LAW)
+#: What the C entry of each kind takes beside parameters and state; the last one is its result.
+_TAKES = {"transition": "const ethd_contact *, ethd_ruling *", "contact": "double, double, int, double *",
+          "tracking": "const ethd_tracking_in *, double *"}
+
+
+def _decorator(kind: str, id: str, brief: str, state: int, params: Dict[str, Any]) -> Callable[[Callable[..., Any]], Law]:
+    def make(function: Callable[..., Any]) -> Law:
+        def step(p: Any, block: Any, *taken: Any) -> int:
+            out, given = taken[-1], [_copied(of) for of in taken[:-1]]
+            if kind == "transition":
+                given.append(ffi.new("ethd_ruling *", out[0]))
+            elif kind == "contact":
+                given[2] = bool(given[2])
+            with _state(block, state) as own:
+                found = function({name: p[i] for i, name in enumerate(params)}, own, *given)
+            if kind == "tracking":
+                out[0], out[1] = found
+            else:
+                out[0] = found if kind == "contact" else given[-1][0]
+            return 0
+
+        # an exception in it sends the controller to its safe state
+        entry = ffi.callback(f"ethd_status(*)(const double *, void *, {_TAKES[kind]})", step, error=lib.ETHD_E_LAW)
+        return _made(kind, id, entry, brief, params, state)
+
+    return make
 
 
 def transition_law(id: str, brief: str = "a law in Python", state: int = 0, **params: Any) -> Callable[[Callable[..., None]], Law]:
@@ -152,51 +172,16 @@ def transition_law(id: str, brief: str = "a law in Python", state: int = 0, **pa
         def mine(p, state, contact, out):
             out.damping = p["brake"] if contact.d_re < 0 else 0
     """
-
-    def make(function: Callable[..., None]) -> Law:
-        names = list(params)
-
-        def step(p: Any, block: Any, contact: Any, out: Any) -> int:
-            ruling = ffi.new("ethd_ruling *", out[0])
-            with _state(block, state) as own:
-                function(_numbers(p, names), own, _copied(contact), ruling)
-            out[0] = ruling[0]
-            return 0
-
-        return _made("transition", id, _entry("ethd_status(*)(const double *, void *, const ethd_contact *, ethd_ruling *)", step), brief, params, state, [])
-
-    return make
+    return _decorator("transition", id, brief, state, params)
 
 
 def contact_law(id: str, brief: str = "a law in Python", state: int = 0, **params: Any) -> Callable[[Callable[..., float]], Law]:
     """A decorator: a wall's force. The function gets (p, state, gap, speed, entering): m to the wall (< 0 inside), m/s (> 0
     entering), and returns N along the normal, <= 0: the wall pushes the ring out."""
-
-    def make(function: Callable[..., float]) -> Law:
-        names = list(params)
-
-        def step(p: Any, block: Any, gap: float, speed: float, entering: int, force: Any) -> int:
-            with _state(block, state) as own:
-                force[0] = function(_numbers(p, names), own, gap, speed, bool(entering))
-            return 0
-
-        return _made("contact", id, _entry("ethd_status(*)(const double *, void *, double, double, int, double *)", step), brief, params, state, [])
-
-    return make
+    return _decorator("contact", id, brief, state, params)
 
 
 def tracking_law(id: str, brief: str = "a law in Python", state: int = 0, **params: Any) -> Callable[[Callable[..., Any]], Law]:
     """A decorator: how the ring follows the finger. The function gets (p, state, motion), an ethd_tracking_in, and returns the
     two joint torques in Nm."""
-
-    def make(function: Callable[..., Any]) -> Law:
-        names = list(params)
-
-        def step(p: Any, block: Any, motion: Any, torque: Any) -> int:
-            with _state(block, state) as own:
-                torque[0], torque[1] = function(_numbers(p, names), own, _copied(motion))
-            return 0
-
-        return _made("tracking", id, _entry("ethd_status(*)(const double *, void *, const ethd_tracking_in *, double *)", step), brief, params, state, [])
-
-    return make
+    return _decorator("tracking", id, brief, state, params)

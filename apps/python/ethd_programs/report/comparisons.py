@@ -161,9 +161,8 @@ def within(r: Report, quantity: Quantity, a: Cell, b: Cell, less: Optional[Tuple
     tested = len(values) >= FEWEST_PEOPLE and not math.isnan(margin)
     out = Within(quantity, a, b, less, compare(values, r.seed), equivalent(values, -margin, margin) if tested else Equivalence())
     if not less:
-        taps = [(cell.of(quantity), cell.person, side) for side, cell in enumerate((a, b))]
-        value, person = np.concatenate([t[0] for t in taps]), np.concatenate([t[1] for t in taps])
-        side = np.concatenate([np.full(len(t[0]), t[2]) for t in taps])
+        value, person = np.concatenate([a.of(quantity), b.of(quantity)]), np.concatenate([a.person, b.person])
+        side = np.repeat([0, 1], [a.count, b.count])
         there = ~np.isnan(value)
         clusters = Clusters(value[there], person[there], side[there])
         out.delta, out.delta_interval = clusters.here(cliff), clusters.interval(cliff, r.seed)
@@ -187,6 +186,11 @@ def print_tests(r: Report, tests: Sequence[Within], caption: str, what: str, wit
         also = (number_text(w.delta, 2), interval_text(delta.low, delta.high, 2)) if with_delta else ()
         r.page.row(w.quantity.title, w.what, number_text(w.paired.d_z, 2), interval_text(effect.low, effect.high, 2), *also)
     r.page.end_table()
+
+
+#: The columns of test_row for two strategies at one speed.
+PAIRED = ("metric,unit,transition_a,transition_b,speed,participants,positive,mean_b_minus_a,sd,mean_low,mean_high,median,p,p_holm,d_z,d_z_low,"
+          "d_z_high,cliff_delta,cliff_low,cliff_high,mean_low_90,mean_high_90,p_equivalent")
 
 
 def test_row(w: Within) -> List[Text]:
@@ -222,8 +226,7 @@ def pairs(r: Report) -> None:
     r.differences, r.significant = len(tests), sum(w.holm < 0.05 for w in tests)
     print_tests(r, tests, "Differences of participants' medians. n: participants with both, in brackets those with a difference above 0. Family "
                  "of Holm's correction: the p of this table. p, alike: equivalence within the study's margin, not corrected", "difference", True)
-    r.output.table("pairs.csv", "metric,unit,transition_a,transition_b,speed,participants,positive,mean_b_minus_a,sd,mean_low,mean_high,median,p,"
-                   "p_holm,d_z,d_z_low,d_z_high,cliff_delta,cliff_low,cliff_high,mean_low_90,mean_high_90,p_equivalent", map(test_row, tests))
+    r.output.table("pairs.csv", PAIRED, map(test_row, tests))
 
 
 def interaction(r: Report) -> None:

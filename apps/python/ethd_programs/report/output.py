@@ -1,7 +1,9 @@
 """The folder of a report: locked while it is written; its files take their places whole."""
+import csv
 import errno
 import fcntl
 import fnmatch
+import io
 import os
 import re
 import stat
@@ -15,16 +17,11 @@ _LOCK = ".lock"
 _LINK = "is a link, which isn't followed in a folder of somebody else; a file is needed"
 
 
-def cell_text(cell: Cell) -> str:
-    """A cell of a table: empty where there is nothing, and a number of real ones keeps its point."""
-    if cell is None or cell != cell:
-        return ""
-    if isinstance(cell, float):
-        return repr(float(cell))
-    text = str(cell)
-    if isinstance(cell, str):
-        text = "".join(c if c >= " " else " " for c in text)
-    return '"' + text.replace('"', '""') + '"' if any(c in text for c in ',"') else text
+def _cell(cell: Cell) -> Cell:
+    """None and NaN become empty, control characters spaces; csv.writer gives a float a decimal point or an exponent."""
+    if cell != cell:
+        return None
+    return re.sub(r"[\0-\x1f]", " ", cell) if isinstance(cell, str) else cell
 
 
 def harmless(words: str) -> str:
@@ -94,5 +91,7 @@ class ReportFolder:
             file.write(data)
 
     def table(self, name: str, header: str, rows: Iterable[Sequence[Cell]]) -> None:
-        lines = [header, *(",".join(map(cell_text, row)) for row in rows)]
-        self.write(name, ("\n".join(lines) + "\n").encode())
+        text = io.StringIO()
+        text.write(header + "\n")
+        csv.writer(text, lineterminator="\n").writerows(map(_cell, row) for row in rows)
+        self.write(name, text.getvalue().encode())

@@ -1,6 +1,7 @@
 """A page that stands alone: no script, no other file. Whatever isn't markup of our own is escaped here, and nothing else
 writes to a page."""
 import base64
+import html
 import re
 from concurrent.futures import Future
 from typing import List, Optional, Sequence, Union
@@ -26,9 +27,7 @@ _STYLE = (
 
 
 def escaped(text: str) -> str:
-    for char, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;"), ("'", "&#39;")):
-        text = text.replace(char, entity)
-    return re.sub(r"[\0-\x1f\x7f]", "?", text)
+    return re.sub(r"[\0-\x1f\x7f]", "?", html.escape(text))
 
 
 class Page:

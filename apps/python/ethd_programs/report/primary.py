@@ -2,7 +2,7 @@
 from typing import List, Optional, Tuple
 
 from ethd_programs.cli import plural
-from ethd_programs.report.comparisons import corrected, print_tests, test_row, within
+from ethd_programs.report.comparisons import PAIRED, corrected, print_tests, test_row, within
 from ethd_programs.report.report import Report
 from ethd_programs.report.statistics import people_needed
 from ethd_programs.report.taps import QUANTITIES, Cell, Quantity, Taps
@@ -29,8 +29,7 @@ def primary(r: Report) -> None:
                f" No taps are there yet for: {', '.join(missing)}." if missing else "", r.folder.facts["exclusions"] or "none")
     made = corrected(tests)
     print_tests(r, made, "Differences of participants' medians. Family of Holm's correction: the primary outcomes", "difference", True)
-    r.output.table("primary.csv", "metric,unit,transition_a,transition_b,speed,participants,positive,mean_b_minus_a,sd,mean_low,mean_high,median,p,"
-                   "p_holm,d_z,d_z_low,d_z_high,cliff_delta,cliff_low,cliff_high,mean_low_90,mean_high_90,p_equivalent", map(test_row, made))
+    r.output.table("primary.csv", PAIRED, map(test_row, made))
 
 
 def print_power(name: str, words: List[str], taps: Taps) -> None:
