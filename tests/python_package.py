@@ -11,6 +11,7 @@ import numpy.lib.recfunctions
 from python_help import build, folder, refuses, tree, write
 
 import ethd
+from ethd_programs.recording import fields_of
 from ethd_programs.table import lines
 
 rng = np.random.default_rng(7)
@@ -242,6 +243,8 @@ refuses("the shape (3,); a tick takes one row", lambda: c.step(r.tick[:3]), Valu
 refuses("found ndarray; a row of", lambda: c.step(np.zeros(600)), TypeError)
 refuses("found bytes; a row of", lambda: c.step(bytes(1000)), TypeError)
 assert ethd.TRACE == r.tick.dtype and set(ethd.UNITS) == set(ethd.TRACE.names) and ethd.UNITS["dq"] == "rad/s"
+for rows_of, units in ((ethd.TRACE, ethd.UNITS), (ethd.SPACE_TRACE, ethd.SPACE_UNITS)):
+    assert {f.name: f.unit for f in fields_of(rows_of)} == units  # what ethd-convert derives is the library's
 sense["q"] = np.nan
 assert c.step(sense).safe and any(e.kind == "fault" and "possible" in e.text for e in c.events())
 

@@ -1,8 +1,9 @@
 """Recordings, the folders that the programs write (include/ethd/record.h), read in pieces."""
 import datetime
+import math
 import mmap
 import os
-from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,156 +18,63 @@ PIECE = 4096  #: rows that are read at once
 
 
 class Field(NamedTuple):
-    """A field of a tick (include/ethd/sense.h)."""
+    """A field of a tick (include/ethd/sense.h, include/ethd/space.h)."""
 
     name: str
     unit: str
     columns: Tuple[str, ...]  #: what a table calls its numbers
-    given_by: Tuple[int, ...] = (0,)  #: for each column, or for all: bits of `have` that mark it as given by the device, any of them suffices; 0: always given
+    given_by: Tuple[int, ...]  #: for each column, or for all: bits of `have` that mark it as given by the device, any of them suffices; 0: always given
 
 
-def _pair(name: str, unit: str) -> Tuple[str, ...]:
-    return tuple(name.format(axis) + unit for axis in "xy")
+#: What a table calls a field's numbers: @ stands for each axis, # for 1, 2 and so on. What ethd-replay reads and writes has the
+#: same names.
+_COLUMNS = {
+    "time_ns": "t_s", "sample_ns": "t_ring_s", "q": "q#_rad", "dq": "dq#_radps", "x": "@_m", "v": "v@_mps", "normal": "normal_@",
+    "finger": "finger_@_m", "finger_v": "finger_v@_mps", "centre": "centre_@_m", "ring": "ring_@_m",
+    "rays": " ".join(f"r{i}_m" for i in range(16)), "bodies": "body#_x_m body#_y_m body#_angle_rad body#_vx_mps body#_vy_mps body#_spin_radps",
+    "reading": "reading_@_m", "reading_v": "reading_v@_mps", "commanded": "commanded#_Nm", "age": "age#_s",
+    "ability": "able_speed_mps able_acceleration_mps2 able_delay_s able_mass_kg able_force_N able_friction_N",
+    "xf": "@f_m", "vf": "v@f_mps", "qd": "qd#_radps", "eps_q": "epsq#_rad", "eps_q_dot": "depsq#_radps", "fe": "fe@_N", "fd": "fd@_N",
+    "tau_raw": "tau#_raw_Nm", "tau": "tau#_Nm", "asked": "asked_@", "command": "command_@", "facing": "facing_@", "learnt": "learnt#",
+    "near_point": "near#_@_m", "near_n": "near#_n@", "near_v": "near#_v@_mps", "near_id": "near#_id", "near_material": "near#_material",
+    **{name: f"{name}_m" for name in ("finger_noise", "reading_noise", "rf", "eps", "d_re", "d_fe")},
+    **{name: f"{name}_mps" for name in ("reading_v_noise", "v_n", "speed")},
+    **{name: name for name in ("have", "missed", "step_ns", "faults", "grave", "tick", "fault", "guard", "swap", "queried", "contacts",
+                               "overflow", "object", "body", "state", "beta", "near")},
+}  # fmt: skip
+_GIVEN_BY = {"dq": 1, "finger": 2 | 4, "finger_v": 2, "sample_ns": 8 | 16, "centre": 8, "ring": 32, "rays": 16, "commanded": 2048, "age": 4096}
+#: The same of space where it differs.
+_SPACE_COLUMNS = {**_COLUMNS, "sample_ns": "t_reading_s", "commanded": "commanded_@"}
+_SPACE_GIVEN_BY = {"normal": 16, "finger": 1, "finger_v": 1, "sample_ns": 2, "reading": 2, "reading_v": 4, "reading_noise": 2, "reading_v_noise": 4,
+                   "ability": 32, "commanded": 128}  # fmt: skip
+_UNITS = {"mps": "m/s", "radps": "rad/s", "bodies": "m, rad, s", "ability": "m/s, m/s2, s, kg, N, N", **dict.fromkeys(("commanded", "asked", "command"), "N, m/s")}
+_MOST = 48  # numbers of a field
 
 
-_BODY = ("x_m", "y_m", "angle_rad", "vx_mps", "vy_mps", "spin_radps")
-
-#: What ethd-replay reads and writes has the same names.
-FIELDS = (
-    Field("time_ns", "ns", ("t_s",)),
-    Field("have", "1", ("have",)),
-    Field("missed", "1", ("missed",)),
-    Field("step_ns", "ns", ("step_ns",)),
-    Field("faults", "1", ("faults",)),
-    Field("grave", "1", ("grave",)),
-    Field("q", "rad", ("q1_rad", "q2_rad")),
-    Field("dq", "rad/s", ("dq1_radps", "dq2_radps"), (1,)),
-    Field("finger", "m", _pair("finger_{}", "_m"), (2 | 4,)),
-    Field("finger_v", "m/s", _pair("finger_v{}", "_mps"), (2,)),
-    Field("sample_ns", "ns", ("t_ring_s",), (8 | 16,)),
-    Field("centre", "m", _pair("centre_{}", "_m"), (8,)),
-    Field("ring", "m", _pair("ring_{}", "_m"), (32,)),
-    Field("rays", "m", tuple(f"r{i}_m" for i in range(16)), (16,)),
-    Field("bodies", "m, rad, s", tuple(f"body{i + 1}_{part}" for i in range(4) for part in _BODY), tuple(64 << i for i in range(4) for _ in _BODY)),
-    Field("finger_noise", "m", ("finger_noise_m",)),
-    Field("commanded", "Nm", ("commanded1_Nm", "commanded2_Nm"), (2048,)),
-    Field("age", "s", ("age1_s", "age2_s"), (4096,)),
-    Field("tick", "1", ("tick",)),
-    Field("fault", "1", ("fault",)),
-    Field("guard", "1", ("guard",)),
-    Field("swap", "1", ("swap",)),
-    Field("queried", "1", ("queried",)),
-    Field("contacts", "1", ("contacts",)),
-    Field("overflow", "1", ("overflow",)),
-    Field("object", "1", ("object",)),
-    Field("body", "1", ("body",)),
-    Field("state", "1", ("state",)),
-    Field("x", "m", ("x_m", "y_m")),
-    Field("v", "m/s", ("vx_mps", "vy_mps")),
-    Field("xf", "m", ("xf_m", "yf_m")),
-    Field("vf", "m/s", ("vxf_mps", "vyf_mps")),
-    Field("rf", "m", ("rf_m",)),
-    Field("qd", "rad/s", ("qd1_radps", "qd2_radps")),
-    Field("eps_q", "rad", ("epsq1_rad", "epsq2_rad")),
-    Field("eps_q_dot", "rad/s", ("depsq1_radps", "depsq2_radps")),
-    Field("beta", "1", ("beta",)),
-    Field("fe", "N", ("fex_N", "fey_N")),
-    Field("fd", "N", ("fdx_N", "fdy_N")),
-    Field("eps", "m", ("eps_m",)),
-    Field("d_re", "m", ("d_re_m",)),
-    Field("d_fe", "m", ("d_fe_m",)),
-    Field("v_n", "m/s", ("v_n_mps",)),
-    Field("tau_raw", "Nm", ("tau1_raw_Nm", "tau2_raw_Nm")),
-    Field("tau", "Nm", ("tau1_Nm", "tau2_Nm")),
-    Field("learnt", "1", tuple(f"learnt{i}" for i in range(1, 5))),
-)
-def _axes(name: str, unit: str) -> Tuple[str, ...]:
-    return tuple(name.format(axis) + unit for axis in "xyz")
-
-
-_NEAR = range(1, 17)
-
-#: The same of space (include/ethd/space.h).
-SPACE_FIELDS = (
-    Field("time_ns", "ns", ("t_s",)),
-    Field("have", "1", ("have",)),
-    Field("missed", "1", ("missed",)),
-    Field("step_ns", "ns", ("step_ns",)),
-    Field("faults", "1", ("faults",)),
-    Field("grave", "1", ("grave",)),
-    Field("x", "m", ("x_m", "y_m", "z_m")),
-    Field("v", "m/s", ("vx_mps", "vy_mps", "vz_mps")),
-    Field("normal", "1", _axes("normal_{}", ""), (16,)),
-    Field("finger", "m", _axes("finger_{}", "_m"), (1,)),
-    Field("finger_v", "m/s", _axes("finger_v{}", "_mps"), (1,)),
-    Field("sample_ns", "ns", ("t_reading_s",), (2,)),
-    Field("reading", "m", _axes("reading_{}", "_m"), (2,)),
-    Field("reading_v", "m/s", _axes("reading_v{}", "_mps"), (4,)),
-    Field("reading_noise", "m", ("reading_noise_m",), (2,)),
-    Field("reading_v_noise", "m/s", ("reading_v_noise_mps",), (4,)),
-    Field(
-        "ability",
-        "m/s, m/s2, s, kg, N, N",
-        ("able_speed_mps", "able_acceleration_mps2", "able_delay_s", "able_mass_kg", "able_force_N", "able_friction_N"),
-        (32,),
-    ),
-    Field("commanded", "N, m/s", _axes("commanded_{}", ""), (128,)),
-    Field("tick", "1", ("tick",)),
-    Field("fault", "1", ("fault",)),
-    Field("guard", "1", ("guard",)),
-    Field("swap", "1", ("swap",)),
-    Field("contacts", "1", ("contacts",)),
-    Field("overflow", "1", ("overflow",)),
-    Field("object", "1", ("object",)),
-    Field("state", "1", ("state",)),
-    Field("xf", "m", ("xf_m", "yf_m", "zf_m")),
-    Field("vf", "m/s", ("vxf_mps", "vyf_mps", "vzf_mps")),
-    Field("beta", "1", ("beta",)),
-    Field("fe", "N", _axes("fe{}", "_N")),
-    Field("fd", "N", _axes("fd{}", "_N")),
-    Field("eps", "m", ("eps_m",)),
-    Field("d_re", "m", ("d_re_m",)),
-    Field("d_fe", "m", ("d_fe_m",)),
-    Field("v_n", "m/s", ("v_n_mps",)),
-    Field("speed", "m/s", ("speed_mps",)),
-    Field("asked", "N, m/s", _axes("asked_{}", "")),
-    Field("command", "N, m/s", _axes("command_{}", "")),
-    Field("facing", "1", _axes("facing_{}", "")),
-    Field("learnt", "1", tuple(f"learnt{i}" for i in range(1, 5))),
-    Field("near", "1", ("near",)),
-    Field("near_point", "m", tuple(f"near{i}_{axis}_m" for i in _NEAR for axis in "xyz")),
-    Field("near_n", "1", tuple(f"near{i}_n{axis}" for i in _NEAR for axis in "xyz")),
-    Field("near_v", "m/s", tuple(f"near{i}_v{axis}_mps" for i in _NEAR for axis in "xyz")),
-    Field("near_id", "1", tuple(f"near{i}_id" for i in _NEAR)),
-    Field("near_material", "1", tuple(f"near{i}_material" for i in _NEAR)),
-)
-INTEGERS = {"time_ns", "have", "missed", "step_ns", "faults", "grave", "sample_ns", "tick", "fault", "guard", "swap", "queried",
-            "contacts", "overflow", "object", "body", "state", "near", "near_id", "near_material"}  # fmt: skip
-
-
-def _dtype(fields: Sequence[Field]) -> "np.dtype[Any]":
-    def entry(f: Field) -> Tuple[Any, ...]:
-        kind = "=i8" if f.name in INTEGERS else "=f8"
-        return (f.name, kind, (len(f.columns),)) if len(f.columns) > 1 else (f.name, kind)
-
-    return np.dtype([entry(f) for f in fields])
-
-
-def _newer() -> Set[str]:
-    """Fields that a recording of an earlier version may lack: what follows on finger_noise in the sense, and on learnt."""
-    names = [f.name for f in FIELDS]
-    tick = names.index("tick")
-    return {*names[names.index("finger_noise") : tick], *names[names.index("learnt") :]}
+def _unit(name: str, columns: Sequence[str]) -> str:
+    """By the ending of the columns if they have the same one."""
+    if name.endswith("_ns"):
+        return "ns"
+    endings = {column.rpartition("_")[2] for column in columns}
+    ending = endings.pop()
+    return _UNITS.get(name, "1") if endings or ending not in ("m", "mps", "rad", "radps", "s", "N", "Nm") else _UNITS.get(ending, ending)
 
 
 def fields_of(dtype: "np.dtype[Any]") -> Tuple[Field, ...]:
-    """The fields that a recording's rows have, of the plane or of space; none: they are other rows."""
-    newer, has = _newer(), set(dtype.names or ())
-    for all_fields in FIELDS, SPACE_FIELDS:
-        fields = tuple(f for f in all_fields if f.name in has or all_fields is SPACE_FIELDS or f.name not in newer)
-        if dtype == _dtype(fields):
-            return fields
-    return ()
+    """The fields that a recording's rows have, of the plane or of space; none: they are other rows. An earlier version's lack some."""
+    names = dtype.names or ()
+    is_space = "reading" in names
+    known, given_by, axes = (_SPACE_COLUMNS, _SPACE_GIVEN_BY, "xyz") if is_space else (_COLUMNS, _GIVEN_BY, "xy")
+    found = []
+    for name in names:
+        count = math.prod(dtype[name].shape)
+        parts = [part.replace("@", axis) for part in known.get(name, "").split() for axis in (axes if "@" in part else axes[0])]
+        columns = [part.replace("#", str(i)) for i in range(1, min(count, _MOST) + 1) for part in parts][:count]
+        if not parts or count % len(parts) or len(set(columns)) != count or dtype[name].base.str not in ("<i8", "<f8"):
+            return ()
+        given = [64 << i // len(parts) for i in range(count)] if name == "bodies" else [given_by.get(name, 0)]
+        found.append(Field(name, _unit(name, columns), tuple(columns), tuple(given)))
+    return tuple(found) if names[:2] == ("time_ns", "have") else ()
 
 
 class RecordedEvent(NamedTuple):
