@@ -173,7 +173,7 @@ def test_a_page_that_is_filled_is_asked_about() -> None:
         (f"<svg {NAMESPACE} width='1' height='1' viewBox='0 0 0 1'/>", "viewBox"),
         (f"<svg {NAMESPACE} width='1' height='1' viewBox='0 0 2 1' preserveAspectRatio='none'/>", "stretch"),
         ("<svg width='1' height='1'/>", "must begin with svg"),
-        (f"<svg {NAMESPACE} xmlns:i='http://www.inkscape.org/namespaces/inkscape' i:version='0.48.4' width='744' height='1052'/>", "1/90 inch"),
+        (f"<svg {NAMESPACE} xmlns:i='http://www.inkscape.org/namespaces/inkscape' i:version='0.48.4' width='744' height='1052'/>", "90 px an inch"),
     ],
 )
 def test_refusals(body: str, words: str) -> None:

@@ -7,7 +7,7 @@ from typing import Optional, Sequence
 from ethd_programs.cli import DONE, FAILED, Parser, Refusal, quoted, run, tell
 
 MORE = """
-What is drawn decides: a filled shape is solid, and what is stroked alone is a thin wall, whatever its width. A filled shape with holes becomes walls. Text, images and what else no scene can hold are left out and counted. y is mirrored in SVG, so that it points up.
+A filled shape becomes a solid; a shape with only a stroke becomes a thin wall, whatever the stroke's width. A filled shape with holes becomes walls. Text, images and other unsupported elements are skipped, and their number is printed. y is mirrored in SVG, so that it points up.
 
 Example:
   ethd-scene convert --in drawing.svg --out walls.scene --origin 0.1,0.2

@@ -187,4 +187,4 @@ def _refuse_doubtful(path: str, root: Any, said: bool, size: List[Optional[str]]
     pixels = all(re.fullmatch(r"[\d.eE+-]*\s*(px)?|.*%", (text or "").strip()) for text in size)
     found = re.match(r"0\.(\d+)", root.get(_INKSCAPE) or "")
     if pixels and found and int(found.group(1)[:2].ljust(2, "0")) < 92:
-        raise Refusal(f"{path}: drawn by Inkscape {root.get(_INKSCAPE)}, whose px were 1/90 inch: --scale 2.8222222e-4 says so, 2.6458333e-4 that they are 1/96")
+        raise Refusal(f"{path}: Inkscape before 0.92 used 90 px an inch: give --scale 2.8222222e-4, or 2.6458333e-4 if this drawing uses 96")
