@@ -339,16 +339,3 @@ TEST(test_infinities_that_are_fine) {
   s.limits.workspace[1] = 0.2;
   ck_assert_int_eq(ethd_setup_check(&s, NULL), ETHD_E_RANGE);
 }
-
-TEST(test_laws_must_be_there) {
-  ethd_error error;
-  ethd_setup s = ethd_setup_default();
-  s.tracking = NULL;
-  ck_assert_int_eq(ethd_setup_check(&s, &error), ETHD_E_ARGUMENT);
-  ck_assert_str_eq(error.name, "tracking");
-  s = ethd_setup_default();
-  s.contact = (const ethd_contact_law *)(const void *)&ethd_transition_abrupt;
-  ck_assert_int_eq(ethd_setup_check(&s, &error), ETHD_E_ARGUMENT);
-  ck_assert_str_eq(error.name, "contact");
-  ck_assert_int_eq(ethd_setup_check(NULL, NULL), ETHD_E_ARGUMENT);
-}

@@ -31,6 +31,7 @@ TEST(test_no_law) {
   s = ethd_setup_default();
   s.transition = NULL;
   expect(s, ETHD_E_ARGUMENT, "transition");
+  ck_assert_int_eq(ethd_setup_check(NULL, NULL), ETHD_E_ARGUMENT);
   ck_assert(ethd_setup_range(&s) == 2 * s.ring_radius + s.ring_radius - s.finger_radius_max);
 }
 
