@@ -21,8 +21,7 @@ static void expect_refusal(const char *text, int line, char *says, size_t room) 
 }
 
 static void bad_plugin(int i, char *says, size_t room) {
-  static const char *const names[] = {"wrong_abi", "bad_table", "short_size", "short_entry",
-                                      "no_symbol", "no_law",    "no_step"};
+  static const char *const names[] = {"wrong_abi", "bad_table", "short_entry", "no_symbol", "no_law", "no_step"};
   const char *build = getenv("BUILD");
   char text[1024], lines[32] = "";
   for (int k = 0; k < i; k++) strcat(lines, "\n");
@@ -82,7 +81,7 @@ static void old_point(int i, char *says, size_t room) {
 }
 
 const fault_end fault_ends[] = {
-    {30, ETHD_REACTION_REFUSE, bad_plugin, "seven plugins that are none"},
+    {30, ETHD_REACTION_REFUSE, bad_plugin, "six plugins that are none"},
     {31, ETHD_REACTION_REFUSE, bad_configuration, "nine wrong lines, each told with its number"},
     {32, ETHD_REACTION_COUNTED, full_recorder, "nobody takes the loop's rows; lost ones are told behind"},
     {36, ETHD_REACTION_REFUSE, old_point, "the drive keeps a set-point while it is enabled anew"},

@@ -4,9 +4,6 @@
 
 #include <ethd/plugin.h>
 
-#ifndef SIZE
-#define SIZE ((uint32_t)sizeof(ethd_transition_law))
-#endif
 #ifndef STATE
 #define STATE 0
 #endif
@@ -47,7 +44,8 @@ static ethd_status step(const double *p, void *state, const ethd_contact *contac
 #endif
 
 static const ethd_transition_law law = {
-    .law = {SIZE, ETHD_ABI, ETHD_TRANSITION, STATE, "broken", BRIEF, PARAMS, PARAM_COUNT, CHECK, NULL},
+    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, STATE, "broken", BRIEF, PARAMS, PARAM_COUNT, CHECK,
+            NULL},
     .step = STEP,
 };
 static const ethd_law *const laws[] = {&law.law, &law.law};

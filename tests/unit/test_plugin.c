@@ -35,7 +35,6 @@ typedef struct refusal {
 
 static const refusal refusals[] = {
     {"wrong_abi", ETHD_E_ABI, "ethd_plugin.abi", "a plugin of another ABI; rebuild it against these headers"},
-    {"short_size", ETHD_E_SIZE, "size", "a struct of other headers; compile again with this version's"},
     {"short_entry", ETHD_E_SIZE, "ethd_plugin.size", "a struct of other headers; compile again with this version's"},
     {"big_state", ETHD_E_STATE, "broken", "a law's state is over 512 bytes"},
     {"bad_table", ETHD_E_TABLE, "broken.gain", "a bad parameter table"},
@@ -43,7 +42,6 @@ static const refusal refusals[] = {
     {"no_step", ETHD_E_ARGUMENT, "broken", "an argument is missing or contradicts another"},
     {"twice", ETHD_E_DUPLICATE, "broken", "a name or key occurs twice"},
     {"brief_escapes", ETHD_E_ARGUMENT, "broken", "an argument is missing or contradicts another"},
-    {"brief_lines", ETHD_E_ARGUMENT, "broken", "an argument is missing or contradicts another"},
     {"brief_long", ETHD_E_ARGUMENT, "broken", "an argument is missing or contradicts another"},
     {"no_law", ETHD_E_RANGE, "ethd_plugin.law_count", "a value is out of its range"},
     {"many_laws", ETHD_E_RANGE, "ethd_plugin.law_count", "a value is out of its range"},
