@@ -5,7 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ethd_programs.files import Output
-from ethd_programs.recording import Field, RecordedEvent, Ticks, ahead, utc_offset
+from ethd_programs.recording import Field, RecordedEvent, Ticks, utc_offset
 
 
 def _seconds(instant: int) -> str:
@@ -38,12 +38,10 @@ def _columns(piece: NDArray[Any], f: Field, shifts: NDArray[Any]) -> List[List[s
 
 def write(ticks: Ticks, events: List[RecordedEvent], out: str, folder: str, progress: Callable[[int, int], None]) -> None:
     names = [name for f in ticks.fields for name in f.columns]
-    offset, last, shift, done = utc_offset(events), None, 0, 0
+    offset, done = utc_offset(events), 0
     with Output(out, folder) as file:
         file.write(",".join([names[0], "utc_s", *names[1:]]).encode() + b"\n")
-        for piece in ticks.pieces():
-            shifts, shift = ahead(piece, last, shift)
-            last = int(piece["time_ns"][-1])
+        for piece, shifts in ticks.pieces():
             columns = [column for f in ticks.fields for column in _columns(piece, f, shifts)]
             utc = [""] * len(piece) if offset is None else [_seconds(t + offset) for t in piece["time_ns"].tolist()]
             columns.insert(1, utc)

@@ -6,7 +6,7 @@ from typing import Any, Callable, Dict, Iterator, List, Sequence
 from mcap.writer import Writer
 
 from ethd_programs.files import Output
-from ethd_programs.recording import Field, RecordedEvent, Ticks, ahead, utc_offset
+from ethd_programs.recording import Field, RecordedEvent, Ticks, utc_offset
 
 _EVENT = {
     "type": "object",
@@ -43,7 +43,7 @@ def _topic(writer: Writer, name: str, schema_name: str, schema: Dict[str, Any]) 
 
 def write(ticks: Ticks, events: List[RecordedEvent], out: str, folder: str, progress: Callable[[int, int], None]) -> None:
     names = [f.name for f in ticks.fields]
-    offset, last, shift, row, event, now = utc_offset(events), None, 0, 0, 0, 0
+    offset, row, event, now = utc_offset(events), 0, 0, 0
     with Output(out, folder) as file:
         writer = Writer(file)
         writer.start(library="libethd")
@@ -58,9 +58,7 @@ def write(ticks: Ticks, events: List[RecordedEvent], out: str, folder: str, prog
                 event += 1
 
         published = 0
-        for piece in ticks.pieces():
-            shifts, shift = ahead(piece, last, shift)
-            last = int(piece["time_ns"][-1])
+        for piece, shifts in ticks.pieces():
             instants = (piece["time_ns"] + shifts).tolist()
             for values, now, recorded in zip(_rows(piece), instants, piece["time_ns"].tolist()):
                 published = now if offset is None else recorded + offset

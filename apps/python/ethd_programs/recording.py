@@ -115,21 +115,19 @@ class Ticks:
         if not self.fields or self._rows.ndim != 1:
             raise Refusal(f"{folder}/tick.npy: other columns than those of this version of libethd")
 
-    def pieces(self) -> Iterator[NDArray[Any]]:
+    def pieces(self) -> Iterator[Tuple[NDArray[Any], NDArray[Any]]]:
+        """Rows, and what to add to their instants, ns, so that they never go back: where the recording's time starts again, as
+        it does with each tap, it goes on a millisecond later."""
+        last, shift = None, 0
         for i in range(0, self.count, PIECE):
-            yield self._rows[i : i + PIECE]
+            piece = self._rows[i : i + PIECE]
+            time = piece["time_ns"]
+            steps = np.diff(time, prepend=time[0] if last is None else last)
+            shifts = shift + np.cumsum(np.where(steps < 0, 1_000_000 - steps, 0))
+            last, shift = int(time[-1]), int(shifts[-1])
+            yield piece, shifts
             file: Any = self._rows.base
             file.madvise(mmap.MADV_DONTNEED)  # else its pages stay in memory
-
-
-def ahead(piece: NDArray[Any], last: Optional[int], shift: int) -> Tuple[NDArray[Any], int]:
-    """What to add to a piece's instants, ns, and to the next ones, so that they never go back: where the recording's time
-    starts again, as it does with each tap, it goes on a millisecond later. `last` is the instant before the piece as
-    recorded, None at the beginning, and `shift` what was added to it."""
-    time = piece["time_ns"]
-    steps = np.diff(time, prepend=time[0] if last is None else last)
-    shifts = shift + np.cumsum(np.where(steps < 0, 1_000_000 - steps, 0))
-    return shifts, int(shifts[-1])
 
 
 def utc_offset(found: List[RecordedEvent]) -> Optional[int]:
