@@ -32,6 +32,10 @@ def study_program() -> str:
     return found
 
 
+def _ask(*arguments: str) -> "subprocess.CompletedProcess[str]":
+    return subprocess.run([study_program(), *arguments], stdin=subprocess.DEVNULL, capture_output=True, errors="replace", check=False)
+
+
 def _said(stderr: str) -> str:
     """What ethd-study refuses, as a sentence of our own."""
     return re.sub(r"^ethd-study: ", "", stderr.strip().split("\n")[0])
@@ -63,8 +67,7 @@ class Folder:
     def __init__(self, folders: Sequence[str], plugins: bool, scratch: str):
         """scratch: a folder that isn't there yet, for what ethd-study says."""
         self.folders, self._scratch = folders, scratch
-        command = [study_program(), "--describe", *map(_path, folders), "--out", scratch] + ["--plugins"] * plugins
-        told = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, errors="replace", check=False)
+        told = _ask("--describe", *map(_path, folders), "--out", scratch, *["--plugins"] * plugins)
         if told.returncode:
             raise Refusal(_said(told.stderr), told.returncode if told.returncode > 0 else FAILED)
         self.facts: Dict[str, Any] = json.loads(words(os.path.join(scratch, "study.json")))
@@ -113,8 +116,7 @@ def check_sums(folders: Sequence[str]) -> Tuple[int, str]:
     """(files of all folders, what is wrong with the first folder that isn't as its SHA256SUMS says, else "")."""
     files = 0
     for folder in folders:
-        command = [study_program(), "--verify", _path(folder)]
-        told = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, errors="replace", check=False)
+        told = _ask("--verify", _path(folder))
         if told.returncode:
             said = _said(told.stderr)
             return files, said[len(_path(folder)) :].lstrip("/: ") if said.startswith(_path(folder)) else said

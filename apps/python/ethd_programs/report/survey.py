@@ -1,8 +1,7 @@
 """The section of a study's questionnaire: counts, tests within people by ranks, words. Answers count as ordered."""
-import math
 from dataclasses import dataclass
 from itertools import combinations, groupby
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Sequence
 
 import numpy as np
 
@@ -30,13 +29,11 @@ class _Question:
         return f"Q{self.number}: {self.text}"
 
 
-def _whole(answer: str) -> int:
-    """0: it isn't a whole number."""
+def _number(answer: str) -> float:
     try:
-        number = float(answer)
+        return float(answer)
     except ValueError:
-        return 0
-    return int(number) if math.isfinite(number) and number == int(number) else 0
+        return NAN
 
 
 def _read(r: Report) -> List[_Question]:
@@ -51,8 +48,8 @@ def _read(r: Report) -> List[_Question]:
         for q, answer in zip(questions, answers):
             if not answer:
                 continue
-            chosen = _whole(answer)
-            if q.answers and not 1 <= chosen <= len(q.answers):
+            chosen = _number(answer)
+            if q.answers and chosen not in range(1, len(q.answers) + 1):
                 raise Refusal(f"{r.survey.path}:{row + 2}: q{q.number}: found {quoted(answer)}, a whole number from 1 to {len(q.answers)} is "
                               "allowed")
             if cell is None or person is None:
@@ -99,57 +96,34 @@ def _draw(r: Report, q: _Question) -> None:
 # ---- tests ----
 
 
-@dataclass
-class _Test:
-    question: int
-    speed: str
-    laws: Optional[Tuple[str, str]]  #: None: all strategies at this speed (Friedman)
-    n: int
-    higher: int
-    lower: int
-    statistic: float
-    p: float
-    holm: float = NAN
-
-    @property
-    def name(self) -> str:
-        return "Wilcoxon" if self.laws else "Friedman"
-
-
-def _tests(r: Report, questions: Sequence[_Question]) -> List[_Test]:
-    """For each question and speed all strategies together, where there are more than two, and each two."""
-    out: List[_Test] = []
+def _tests(r: Report, questions: Sequence[_Question]) -> List[List[Any]]:
+    """For each question and speed all strategies together, where there are more than two, and each two: rows of the table without
+    Holm's correction."""
+    out: List[List[Any]] = []
     for q in questions:
         for speed, group in groupby(range(len(r.taps.cells)), lambda i: r.taps.cells[i].speed.word):
             cells: List[Any] = list(group)
             if len(cells) > 2:
                 rows = np.stack([q.given[i] for i in cells], axis=1)
                 rows = rows[~np.isnan(rows).any(axis=1)]
-                chi, p = friedman(rows)
-                out.append(_Test(q.number, speed, None, len(rows), 0, 0, chi, p))
+                out.append([q.number, "Friedman", "", "", speed, len(rows), None, None, *friedman(rows)])
             for a, b in combinations(cells, 2):
                 d = q.given[b] - q.given[a]
                 d = d[~np.isnan(d)]
-                w, p = wilcoxon(d)
-                out.append(_Test(q.number, speed, (r.taps.cells[a].law, r.taps.cells[b].law), len(d), int(np.count_nonzero(d > 0)),
-                                 int(np.count_nonzero(d < 0)), w, p))
-    for test in out:
-        test.p = test.p if test.n >= FEWEST_PEOPLE else NAN
-    for test, corrected in zip(out, holm([t.p for t in out])):
-        test.holm = corrected
+                out.append([q.number, "Wilcoxon", r.taps.cells[a].law, r.taps.cells[b].law, speed, len(d), int(np.count_nonzero(d > 0)),
+                            int(np.count_nonzero(d < 0)), *wilcoxon(d)])
     return out
 
 
 def _put_tests(r: Report, questions: Sequence[_Question]) -> None:
     r.page.table("Answers compared within participants, by ranks. Family of Holm's correction: the p of this table",
                  ("question", "answers", "test", "n", "higher", "lower", "W or chi square", "p", "p, Holm"), 3)
-    rows: List[List[Text]] = []
-    for t in _tests(r, questions):
-        a, b = t.laws or ("", "")
-        what = f"{b} - {a}, {t.speed}" if t.laws else f"all strategies, {t.speed}"
-        r.page.row(f"Q{t.question}", what, t.name, str(t.n), str(t.higher) if t.laws else "-", str(t.lower) if t.laws else "-",
-                   number_text(t.statistic, 2), p_text(t.p), p_text(t.holm))
-        rows.append([t.question, t.name, a, b, t.speed, t.n, t.higher if t.laws else None, t.lower if t.laws else None, t.statistic, t.p, t.holm])
+    rows = _tests(r, questions)
+    for row, corrected in zip(rows, holm([row[-1] if row[5] >= FEWEST_PEOPLE else NAN for row in rows])):
+        row[-1:] = [row[-1] if row[5] >= FEWEST_PEOPLE else NAN, corrected]
+        number, test, a, b, speed, n, higher, lower, statistic, p, _ = row
+        r.page.row(f"Q{number}", f"{b} - {a}, {speed}" if a else f"all strategies, {speed}", test, str(n), *("-" if k is None else str(k) for k in (higher, lower)),
+                   number_text(statistic, 2), p_text(p), p_text(corrected))
     r.page.end_table()
     r.output.table("survey-tests.csv", "question,test,transition_a,transition_b,speed,n,higher,lower,statistic,p,p_holm", rows)
 

@@ -41,13 +41,11 @@ def _force(facts: Dict[str, Any], q: Numbers, tau: Numbers) -> Numbers:
     serial = facts["mechanism"] == "serial"
     angle = np.stack((q[:, 0], q[:, 0] + q[:, 1] if serial else q[:, 1]))
     x, y = np.cos(angle) * [[facts["link1_m"]], [facts["link2_m"]]], np.sin(angle) * [[facts["link1_m"]], [facts["link2_m"]]]
-    j = np.array([[-y[0] - y[1] * serial, -y[1]], [x[0] + x[1] * serial, x[1]]])
-    det, w0 = j[0, 0] * j[1, 1] - j[0, 1] * j[1, 0], _SINGULAR * facts["link1_m"] * facts["link2_m"]
-    trace = (j**2).sum(axis=(0, 1))
-    damping = w0**2 / trace * np.maximum(0, 1 - np.abs(det) / w0) ** 2
-    scale = det**2 + damping * trace + damping**2
-    inverse = (det * np.array([[j[1, 1], -j[0, 1]], [-j[1, 0], j[0, 0]]]) + damping * j.swapaxes(0, 1)) / scale
-    return np.asarray(np.hypot(*np.einsum("ijt,ti->jt", inverse, tau)))
+    j = np.moveaxis(np.array([[-y[0] - y[1] * serial, -y[1]], [x[0] + x[1] * serial, x[1]]]), -1, 0)
+    w0 = _SINGULAR * facts["link1_m"] * facts["link2_m"]
+    damping = w0**2 / (j**2).sum(axis=(1, 2)) * np.maximum(0, 1 - np.abs(np.linalg.det(j)) / w0) ** 2
+    damped = j @ j.swapaxes(1, 2) + damping[:, None, None] * np.eye(2)
+    return np.asarray(np.linalg.norm(np.linalg.solve(damped, j @ tau[:, :, None]), axis=(1, 2)))
 
 
 def _strongest(r: Report, tick: Ticks) -> List[float]:
