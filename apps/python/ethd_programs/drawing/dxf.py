@@ -5,8 +5,8 @@ from typing import Any, Counter, Dict, Iterator
 
 import numpy as np
 
-from ethd_programs.cli import Refusal, plural
-from ethd_programs.drawing.geometry import covered
+from ethd_programs.cli import Refusal
+from ethd_programs.drawing.geometry import apart, covered
 from ethd_programs.drawing.scene import Scene
 from ethd_programs.drawing.svg import Result
 from ethd_programs.drawing.svg_source import Options
@@ -36,8 +36,7 @@ def _entities(entities: Any, doc: Any, left_out: Counter[str], depth: int = 0) -
 
 def _flat(path: Any, tolerance: float, k: float, origin: Any) -> Any:
     points = np.array([(p.x, p.y) for p in path.flattening(tolerance / k, segments=4)]).reshape(-1, 2) * k + origin
-    apart = np.abs(np.diff(points, axis=0)).max(axis=1, initial=0) > 1e-9
-    return points[np.concatenate([[True], apart])] if len(points) else points
+    return apart(points) if len(points) else points
 
 
 def read(path: str, data: bytes, options: Options, units: Dict[str, float]) -> Result:
@@ -91,9 +90,7 @@ def read(path: str, data: bytes, options: Options, units: Dict[str, float]) -> R
     gone = [f"{n} {name}" for name, n in left_out.items() if n]
     if gone:
         say(f"left out: {', '.join(gone)}")
-    for count, what in ((scene.holes, "filled with holes: their outlines are walls"), (deep, "away from z = 0: seen from above"), (scene.twice, "drawn twice: kept once")):
-        if count:
-            say(f"{count} shape{plural(count)} {what}")
+    scene.note_shapes((scene.holes, "filled with holes: their outlines are walls"), (deep, "away from z = 0: seen from above"), (scene.twice, "drawn twice: kept once"))
     return Result(scene, (low[0], low[1], max(high[0] - low[0], 1e-6), max(high[1] - low[1], 1e-6)), b"")
 
 

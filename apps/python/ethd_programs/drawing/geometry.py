@@ -69,15 +69,18 @@ def _curve(p: Points, tolerance: float) -> Points:
     return np.asarray(np.vstack([inner, p[3:]]))
 
 
+def apart(points: Points) -> Points:
+    """Points without those that repeat the one before."""
+    return np.asarray(points[np.append(True, np.abs(np.diff(points, axis=0)).max(axis=1, initial=0) > SAME)])
+
+
 def points_of(part: Part, tolerance: float) -> Points:
     """Its vertices without consecutive duplicates; a closed part doesn't repeat the first."""
     found, at = [part.start[None]], part.start
     for piece in part.pieces:
         found.append(piece if len(piece) == 1 else _curve(np.vstack([at[None], piece]), tolerance))
         at = piece[-1]
-    points = np.vstack(found)
-    apart = np.abs(np.diff(points, axis=0)).max(axis=1, initial=0) > SAME
-    points = points[np.concatenate([[True], apart])]
+    points = apart(np.vstack(found))
     while part.closed and len(points) > 1 and np.abs(points[0] - points[-1]).max() <= SAME:
         points = points[:-1]
     return np.asarray(points)

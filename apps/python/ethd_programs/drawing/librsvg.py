@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ethd_programs.cli import FAILED, Refusal, quoted
 from ethd_programs.drawing.geometry import Part, Points, covered, points_of
-from ethd_programs.drawing.svg_source import IGNORED, LINK, SVG, Page, local, opacity_of
+from ethd_programs.drawing.svg_source import IGNORED, LINK, SVG, Page, local, opacity_of, property_of
 
 PIXELS = 3e6  #: of the larger side of what librsvg draws, three times the page: its coordinates are steps of 1/256 pixel
 
@@ -128,12 +128,12 @@ class Reader:
             yield self._path(e, m, clip)
 
     def _clipped(self, e: Any, m: Any, clip: Any) -> Any:
-        found = re.search(r"url\(#?\"?#?([^)\"]+)\"?\)", _property(e, "clip-path") or "")
+        found = re.search(r"url\(#?\"?#?([^)\"]+)\"?\)", property_of(e, "clip-path") or "")
         if not found or found.group(1) not in self.by_id:
             return clip
         inner: Any = None
         for path in self.by_id[found.group(1)]:
-            rule = _property(path, "clip-rule") or _property(e, "clip-rule")
+            rule = property_of(path, "clip-rule") or property_of(e, "clip-rule")
             rings = [points_of(part._replace(closed=True), self.tolerance) for part in _parts(_data(path), self.to_metres @ m @ _matrix(path.get("transform")))]
             shape = covered(rings, rule == "evenodd")
             inner = shape if inner is None else inner.union(shape)
@@ -141,20 +141,14 @@ class Reader:
 
     def _path(self, e: Any, m: Any, clip: Any) -> Drawn:
         def seen(name: str, otherwise: str) -> Optional[str]:
-            paint = _property(e, name) or otherwise
-            if paint == "none" or opacity_of(_property(e, name + "-opacity") or "1") <= 0:
+            paint = property_of(e, name) or otherwise
+            if paint == "none" or opacity_of(property_of(e, name + "-opacity") or "1") <= 0:
                 return None
             found = re.match(r"rgba\(.*,\s*0(\.0*)?\)", paint)
             return None if found else paint
 
         fill = seen("fill", "#000")
-        return Drawn(_parts(_data(e), self.to_metres @ m), fill, _property(e, "fill-rule") == "evenodd", seen("stroke", "none") is not None, clip)
-
-
-def _property(e: Any, name: str) -> Optional[str]:
-    found = re.search(rf"(?:^|;)\s*{name}\s*:\s*([^;]+)", e.get("style") or "")
-    value: Optional[str] = found.group(1).strip() if found else e.get(name)
-    return value
+        return Drawn(_parts(_data(e), self.to_metres @ m), fill, property_of(e, "fill-rule") == "evenodd", seen("stroke", "none") is not None, clip)
 
 
 def _data(e: Any) -> str:

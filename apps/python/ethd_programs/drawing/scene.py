@@ -32,6 +32,9 @@ class Scene:
         self.twice += thing in self.things
         self.things[thing] = None
 
+    def note_shapes(self, *notes: Tuple[int, str]) -> None:
+        self.notes += [f"{count} shape{plural(count)} {what}" for count, what in notes if count]
+
     def circle(self, centre: Points, radius: float) -> None:
         self._add("circle", *centre, radius)
 

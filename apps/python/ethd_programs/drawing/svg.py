@@ -109,7 +109,7 @@ def _note(scene: Scene, options: Options, page: Page, left_out: Counter[str], ou
     plain = [f"{left_out[name]} {name}{plural(left_out[name])}" for name in ("filter", "mask", "marker", "dash", "pattern") if left_out[name]]
     if plain:
         say(f"drawn without: {', '.join(plain)}")
-    for count, what in (
+    scene.note_shapes(
         (scene.holes, "filled with holes: their outlines are walls"),
         (white, "filled with white: taken as solid"),
         (scene.twice, "drawn twice: kept once"),
@@ -117,6 +117,4 @@ def _note(scene: Scene, options: Options, page: Page, left_out: Counter[str], ou
         (across, "beyond the page's edge: kept whole"),
         (pages if options.page == "background" else 0, "as large as the page: left out"),
         (scene.blank, "without length: left out"),
-    ):
-        if count:
-            say(f"{count} shape{plural(count)} {what}")
+    )

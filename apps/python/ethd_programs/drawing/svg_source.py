@@ -1,9 +1,10 @@
 """Reads the source of an SVG drawing: what librsvg gets wrong silently is refused, what no scene can hold is removed and
 counted, and the size of the page is found."""
 import collections
+import graphlib
 import re
 import xml.etree.ElementTree as xml
-from typing import Any, Counter, Dict, List, NamedTuple, Optional, Tuple
+from typing import Any, Counter, List, NamedTuple, Optional, Tuple
 
 from ethd_programs.cli import Refusal, quoted
 
@@ -37,6 +38,12 @@ class Page(NamedTuple):
 
 def local(element: Any) -> str:
     return element.tag[len(SVG) :] if isinstance(element.tag, str) and element.tag.startswith(SVG) else ""
+
+
+def property_of(e: Any, name: str) -> Optional[str]:
+    found = re.search(rf"(?:^|;)\s*{name}\s*:\s*([^;]+)", e.get("style") or "")
+    value: Optional[str] = found.group(1).strip() if found else e.get(name)
+    return value
 
 
 def _styles(root: Any) -> str:
@@ -77,21 +84,11 @@ def _refuse_uses(path: str, root: Any) -> None:
         of = target(e)
         if of is not None and local(of) in ("svg", "symbol") and (e.get("width") or e.get("height")):
             raise Refusal(f"{path}: use with a width or height of a symbol isn't supported; unlink the clone in the drawing's editor")
-    inner = {k: [target(u) for u in e.iter(SVG + "use")] for k, e in by_id.items()}
-    state: Dict[str, int] = {}
-
-    def visit(name: str) -> None:
-        if state.get(name) == 1:
-            raise Refusal(f"{path}: {quoted(name)} uses itself")
-        if state.get(name) is None:
-            state[name] = 1
-            for of in inner[name]:
-                if of is not None:
-                    visit(of.get("id"))
-            state[name] = 2
-
-    for name in by_id:
-        visit(name)
+    inner = {k: {of.get("id") for u in e.iter(SVG + "use") if (of := target(u)) is not None} for k, e in by_id.items()}
+    try:
+        graphlib.TopologicalSorter(inner).prepare()
+    except graphlib.CycleError as error:
+        raise Refusal(f"{path}: {quoted(error.args[1][0])} uses itself") from None
 
 
 def _refuse_transparent(path: str, root: Any) -> None:
@@ -145,14 +142,8 @@ def _length(text: Optional[str]) -> Optional[float]:
     return float(found.group(1)) * factor if found and factor else None
 
 
-def _own(root: Any, name: str) -> Optional[str]:
-    found = re.search(rf"(?:^|;)\s*{name}\s*:\s*([^;]+)", root.get("style") or "")
-    value: Optional[str] = found.group(1).strip() if found else root.get(name)
-    return None if value in (None, "auto") else value
-
-
 def page_of(path: str, root: Any, options: Options) -> Page:
-    size = [_own(root, "width"), _own(root, "height")]
+    size = [None if text == "auto" else text for text in (property_of(root, "width"), property_of(root, "height"))]
     width, height = map(_length, size)
     for text, value in zip(size, (width, height)):
         if text and (value is None and not text.strip().endswith("%") or value is not None and value <= 0):
