@@ -79,7 +79,7 @@ class Parser(argparse.ArgumentParser):
         lines = [f"Usage: {self.prog} [OPTION...] {self.takes}", *textwrap.wrap(self.first, margin), ""]
         for action in self._actions:
             if action.option_strings:
-                lines += _option(action, margin)
+                lines.append(_option(action, margin))
         for paragraph in self.more.strip().split("\n\n"):
             lines.append("")
             for line in paragraph.split("\n"):
@@ -98,13 +98,11 @@ def _margin() -> int:
     return int(found.group(1)) if found else 79
 
 
-def _option(action: argparse.Action, margin: int) -> List[str]:
+def _option(action: argparse.Action, margin: int) -> str:
     names = ", ".join(action.option_strings) if len(action.option_strings) > 1 else f"    {action.option_strings[0]}"
-    left = f"  {names}{'=' + str(action.metavar) if action.metavar else ''}"
-    words = textwrap.wrap(action.help or "", margin - 29)
-    if len(left) > 27:
-        return [left] + [" " * 29 + line for line in words]
-    return [f"{left:<29}{words[0]}"] + [" " * 29 + line for line in words[1:]]
+    left, indent = f"  {names}{'=' + str(action.metavar) if action.metavar else ''}", " " * 29
+    words = textwrap.fill(action.help or "", margin, initial_indent=indent, subsequent_indent=indent)
+    return f"{left}\n{words}" if len(left) > 27 else left + words[len(left) :]
 
 
 class _Usage(argparse.Action):
