@@ -1,5 +1,4 @@
 """Recordings, the folders that the programs write (include/ethd/record.h), read in pieces."""
-import datetime
 import math
 import mmap
 import os
@@ -134,8 +133,6 @@ def utc_offset(found: List[RecordedEvent]) -> Optional[int]:
     """What added to the recording's instants gives UTC, ns since 1970, by the event `clock`; None: nobody knows."""
     for e in found:
         instant, _, date = e.detail.partition(" ")
-        whole, _, fraction = date.rstrip("Z").partition(".")
-        if e.kind == "clock" and instant.isdecimal() and fraction.isdecimal():
-            seconds = datetime.datetime.strptime(whole + "+0000", "%Y-%m-%dT%H:%M:%S%z").timestamp()
-            return int(seconds) * 1_000_000_000 + int(fraction.ljust(9, "0")[:9]) - int(instant)
+        if e.kind == "clock" and instant.isdecimal() and date[:1].isdecimal():
+            return int(np.datetime64(date.rstrip("Z"), "ns").astype(np.int64)) - int(instant)
     return None
