@@ -2,7 +2,7 @@
 import configparser
 import os
 import threading
-from typing import Any, Dict, Iterator, List, Optional, Tuple, Union
+from typing import Any, Dict, Generic, Iterator, List, Optional, Tuple, TypeVar, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +34,11 @@ def ini(path: str) -> configparser.ConfigParser:
     return found
 
 
-class _Recorded:
+_Front = TypeVar("_Front", Controller, Space)
+_Result = TypeVar("_Result", Step, SpaceStep)
+
+
+class _Recorded(Generic[_Front, _Result]):
     """A recording's folder. `tick` is mapped from its file, not copied; a file that the folder lacks is None. Reading runs
     nothing that the folder brings along: its plug-ins are opened by controller(), replay() and verify(), and only with
     plugins=True."""
@@ -44,6 +48,7 @@ class _Recorded:
     taps: Optional[NDArray[Any]]  #: a row a tap, NaN where a number isn't defined; of a study's tap its own
     events: List[RecordedEvent]
     config: configparser.ConfigParser  #: config.ini
+    _front: Any  #: its controller's class
 
     def __init__(self, folder: str, plugins: bool = False):
         self.folder = folder
@@ -56,9 +61,6 @@ class _Recorded:
 
     def _array(self, name: str) -> Optional[NDArray[Any]]:
         return mapped(self.folder, name) if there(self.folder, name) else None
-
-    def _make(self, config: str) -> Union[Controller, Space]:
-        raise NotImplementedError
 
     def _fits(self) -> bool:
         """Whether rows are of this version's columns, or an earlier one's."""
@@ -74,7 +76,7 @@ class _Recorded:
             raise FileNotFoundError(f"{self.folder}/events.csv: No such file, so what happened is unknown: it can't be replayed")
         self._refuse_missing([e for e in self.events if e.row == 0])
         try:
-            return self._make(os.path.join(self.folder, "config.ini"))
+            return self._front(os.path.join(self.folder, "config.ini"), self._plugins)
         except Error as e:
             raise Error(e.status, str(e).replace("plugins=True lets", PLUGINS + " lets")) from None
 
@@ -84,12 +86,18 @@ class _Recorded:
             if e.kind in ("thinned", "lost"):
                 raise Error(lib.ETHD_E_UNFINISHED, f"{self.folder}: from tick {e.row} on it can't be replayed: {e.detail}")
 
-    def _controller(self) -> Any:
-        c = self._open()
+    def controller(self) -> _Front:
+        """A controller set up as the recording began: its configuration, then the events before row 0. Error: ticks are
+        missing from the beginning, as in a recording of every tenth."""
+        c: _Front = self._open()
         _Replay(c).before([e for e in self.events if e.row == 0], first=True)
         return c
 
-    def _replay(self, law: Optional[Law]) -> Iterator[Tuple[np.void, Any]]:
+    def replay(self, law: Optional[Law] = None) -> Iterator[Tuple[np.void, _Result]]:
+        """Yields each recorded row with the library's present result for it; the recording's events act at their rows, and in
+        space the surfaces are those that were recorded. With `law` that one rules in the place of whatever law of its kind was
+        recorded, with the recording's values for parameters of the same name. The recorded device doesn't react to it. Error:
+        ticks are missing before this row."""
         c = self._open()
         replay, rows = _Replay(c, law), self._by_row()
         for i in range(len(self.tick)):
@@ -125,49 +133,25 @@ class _Recorded:
         return str(ffi.string(message).decode())
 
 
-class Recording(_Recorded):
+class Recording(_Recorded[Controller, Step]):
     __doc__ = _Recorded.__doc__
-
-    def _make(self, config: str) -> Controller:
-        return Controller(config, self._plugins)
+    _front = Controller
 
     def _fits(self) -> bool:
         return is_row(self.tick.dtype)
 
-    def controller(self) -> Controller:
-        """A controller set up as the recording began: its configuration, then the events before row 0. Error: ticks are
-        missing from the beginning, as in a recording of every tenth."""
-        found: Controller = self._controller()
-        return found
 
-    def replay(self, law: Optional[Law] = None) -> Iterator[Tuple[np.void, Step]]:
-        """Yields each recorded row with the library's present result for it; the recording's events act at their rows.
-        With `law` that one rules in the place of whatever law of its kind was recorded, with the recording's values for
-        parameters of the same name. The recorded device doesn't react to it. Error: ticks are missing before this row."""
-        return self._replay(law)
-
-
-class SpaceRecording(_Recorded):
+class SpaceRecording(_Recorded[Space, SpaceStep]):
     """A Recording of the front in space: its rows are of the dtype ethd.SPACE_TRACE, with the units of ethd.SPACE_UNITS, and its
     controller is an ethd.Space."""
 
-    def _make(self, config: str) -> Space:
-        return Space(config, self._plugins)
+    _front = Space
 
     def _fits(self) -> bool:
         return self.tick.dtype == SPACE_TRACE
 
     def _step(self, c: Any, row: np.void) -> Any:
         return c.step(row, surfaces_of(row))
-
-    def controller(self) -> Space:
-        """As Recording.controller."""
-        found: Space = self._controller()
-        return found
-
-    def replay(self, law: Optional[Law] = None) -> Iterator[Tuple[np.void, SpaceStep]]:
-        """As Recording.replay; the surfaces are those that were recorded."""
-        return self._replay(law)
 
 
 class _Replay:
