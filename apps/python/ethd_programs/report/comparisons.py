@@ -12,7 +12,7 @@ from ethd_programs.report.bootstrap import Clusters, cliff
 from ethd_programs.report.output import Cell as Text
 from ethd_programs.report.output import harmless
 from ethd_programs.report.page import interval_text, mean_text, number_text, p_text
-from ethd_programs.report.report import Report
+from ethd_programs.report.report import CAVEATS, Report
 from ethd_programs.report.statistics import (FEWEST_PEOPLE, NAN, Equivalence, Interval, Paired, Summary, compare,
                                              equivalent, holm, summarise)
 from ethd_programs.report.taps import QUANTITIES, Cell, Quantity, Taps
@@ -108,8 +108,7 @@ def claims(r: Report) -> None:
                "<p>The threshold is the hand's voluntary speed that best separates the taps that touch early from the others, "
                "of all strategies together; a hand is seldom as fast as it was asked to be. Limits of braking time and offset are judged by "
                "the share of a person's valid taps that keep them. The share of valid taps is the mean of the people's shares; the table of valid taps pools all taps, so that those who needed many weigh more there.</p>\n")
-    r.page.put('<p class="note">%s</p>\n', "These participants are simulated: a p value says how sure the simulation's own answer is. More "
-               "participants cost nothing and make any p small; none of them is evidence about people." if r.beside else r.caveat)
+    r.page.put('<p class="note">%s</p>\n', CAVEATS["simulated"] if r.beside else r.caveat)
     r.page.put("<p>Of %d sentences: %s.</p>\n", len(found), _outcome(r, found))
     r.page.table("Sentences of the paper; n, mean and interval of people's contrasts",
                  ("tested within people", "must be", "test", "n", "mean", "95 %", "d_z", "p"), 3)

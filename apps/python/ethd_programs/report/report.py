@@ -14,7 +14,7 @@ from ethd_programs.report.taps import Taps
 #: movement, nobody.
 LEADERS = ("device", "mouse", "recorded", "simulated")
 
-_CAVEATS = {
+CAVEATS = {
     "device": "Device and finger are simulated: the p values and intervals say nothing about people.",
     "mouse": "Device and fingertip are simulated: the p values and intervals speak about people like these who lead that "
     "simulation by hand.",
@@ -78,7 +78,7 @@ class Report:
         """A sentence that says what p values and intervals are about: people, or the assumptions of a simulation."""
         if self.measured:
             return "The p values and intervals speak about people like these on this device."
-        return next((words for leader, words in _CAVEATS.items() if self.only(leader)), _MIXED)
+        return next((words for leader, words in CAVEATS.items() if self.only(leader)), _MIXED)
 
     # ---- the sample for the paper's sentences ----
 
