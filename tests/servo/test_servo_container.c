@@ -14,6 +14,7 @@
 #include "servo/mock.h"
 #include "text/text.h"
 #include "unit/rig.h"
+#include "unit/suite.h"
 
 #define TRIES 5 /* a busy machine's loop may end by itself before it is killed */
 
@@ -135,7 +136,7 @@ static pid_t push_under(const char *const *before, const char *name, pid_t *chil
 }
 
 /* The program is killed: its guardian lives long enough, and then the namespace ends as it would have. */
-START_TEST(test_killed) {
+TEST_LOOP(test_killed, 0, 3) {
   pid_t child;
   mock_start(&drive, 1);
   prepare("");
@@ -147,10 +148,9 @@ START_TEST(test_killed) {
   ck_assert(said("a guardian process writes zero torque within ") && said("; not when the container is killed"));
   mock_stop(&drive);
 }
-END_TEST
 
 /* docker stop: an init passes SIGTERM on, and the program ends in order. */
-START_TEST(test_stopped) {
+TEST(test_stopped) {
   pid_t child;
   mock_start(&drive, 1);
   prepare("");
@@ -159,10 +159,9 @@ START_TEST(test_stopped) {
   ck_assert(rests());
   mock_stop(&drive);
 }
-END_TEST
 
 /* The keeper is killed: so is the program. Here bash outlives it, and the guardian acts. */
-START_TEST(test_keeper_killed) {
+TEST(test_keeper_killed) {
   pid_t child;
   mock_start(&drive, 1);
   prepare("");
@@ -172,10 +171,9 @@ START_TEST(test_keeper_killed) {
   ck_assert_int_eq(end_of(child), 0);
   mock_stop(&drive);
 }
-END_TEST
 
 /* The first process itself: nobody outlives it, so the drive isn't enabled unless the configuration says so. */
-START_TEST(test_first) {
+TEST(test_first) {
   pid_t child;
   mock_start(&drive, 1);
   prepare("");
@@ -195,7 +193,6 @@ START_TEST(test_first) {
   ck_assert(!said("of this program's end or silence"));
   mock_stop(&drive);
 }
-END_TEST
 
 /* ---- control groups ---- */
 
@@ -215,7 +212,7 @@ static void group(const char *line, const char *oom_at) {
   write_text("root/proc/self/cgroup", line);
 }
 
-START_TEST(test_groups) {
+TEST(test_groups) {
   static const char memory[] = "not when memory runs out: memory.oom.group is 1";
   static const char mixed[] = "not in a service with KillMode=mixed";
   char root[128], out[ETHD_MESSAGE_MAX];
@@ -240,7 +237,6 @@ START_TEST(test_groups) {
   ethd__guardian_limits("/nowhere", false, out);
   ck_assert(!strstr(out, memory) && !strstr(out, mixed));
 }
-END_TEST
 
 /* The plant's map without a watchdog, for a machine that may be busy: exchanges are rare, answers have half a second. */
 static void write_map(void) {
@@ -259,27 +255,21 @@ static void write_map(void) {
   free(all);
 }
 
-int main(void) {
+FIXTURE(write_map, NULL)
+
+int suite_begin(void) {
   const char *build = getenv("BUILD");
-  char command[128];
   if (system("unshare -rfp --mount-proc tini -- true") != 0) {
     puts("SKIP: no PID namespace with tini in it can be made here (tini installed? as root?)");
     return 77;
   }
-  Suite *suite = suite_create("servo_container");
-  TCase *t = tcase_create("servo_container");
   signal(SIGPIPE, SIG_IGN);
-  if (!mkdtemp(folder)) return 1;
   snprintf(run, sizeof run, "%s/bin/ethd-run", build ? build : "build");
-  tcase_add_checked_fixture(t, write_map, NULL);
-  tcase_set_timeout(t, 240);
-  tcase_add_loop_test(t, test_killed, 0, 3);
-  tcase_add_test(t, test_stopped);
-  tcase_add_test(t, test_keeper_killed);
-  tcase_add_test(t, test_first);
-  tcase_add_test(t, test_groups);
-  suite_add_tcase(suite, t);
-  int failed = rig_run(suite);
+  return !mkdtemp(folder);
+}
+
+int suite_end(int failed) {
+  char command[128];
   snprintf(command, sizeof command, "rm -rf %s", folder);
   return system(command) != 0 || failed;
 }

@@ -16,6 +16,7 @@
 #include "servo/words.h"
 #include "text/text.h"
 #include "unit/rig.h"
+#include "unit/suite.h"
 
 #define MS 1000000
 
@@ -26,7 +27,7 @@ static char message[ETHD_MESSAGE_MAX], folder[] = "/tmp/ethd-guard-XXXXXX";
 
 /* ---- the rules ---- */
 
-START_TEST(test_bound) {
+TEST(test_bound) {
   ethd__servo_map map = {.response = 0.003, .drain = 0.0008};
   ck_assert_int_eq(ethd__guardian_bound(&map, 1 * MS), 20 * MS);
   ck_assert_int_eq(ethd__guardian_bound(&map, 10 * MS), 20 * MS);
@@ -34,7 +35,6 @@ START_TEST(test_bound) {
   map.response = 0.015;
   ck_assert_int_eq(ethd__guardian_bound(&map, 1 * MS) / 1000, 31599);
 }
-END_TEST
 
 static ethd__servo_map map;
 static ethd__servo_plan plan;
@@ -56,7 +56,7 @@ static void make(int is_rtu) {
 }
 
 /* Silence is what the last beat is old, and only while a torque may act. */
-START_TEST(test_due) {
+TEST(test_due) {
   make(0);
   guardian.limit_ns = 12 * MS;
   const int64_t t = 5000000000;
@@ -74,7 +74,6 @@ START_TEST(test_due) {
   ck_assert_int_le(guardian.limit_ns, ethd__guardian_bound(&map, MS) * 6 / 10);
   mock_stop(&drive);
 }
-END_TEST
 
 static atomic_int order[2]; /* requests at which torque and control became zero */
 static mock_act note(void *user, uint64_t n, int function) {
@@ -85,7 +84,7 @@ static mock_act note(void *user, uint64_t n, int function) {
 }
 
 /* Zero first, then [disable], asked again until they are answered, over tcp, rtu, and the other checksum. */
-START_TEST(test_act) {
+TEST_LOOP(test_act, 0, 3) {
   make(_i > 0);
   if (_i == 2) drive.crc_high = map.crc = ETHD__SERVO_CRC_HIGH_FIRST;
   ethd__guardian_make(&map, &plan, MS, &guardian);
@@ -107,7 +106,6 @@ START_TEST(test_act) {
   ck_assert(!ethd__guardian_act(&guardian)); /* once */
   mock_stop(&drive);
 }
-END_TEST
 
 /* ---- the process ---- */
 
@@ -152,7 +150,7 @@ static bool is_quiet(void) { return !drive.words[MOCK_TORQUE1] && !drive.words[M
 static bool is_off(void) { return !(drive.words[MOCK_STATUS] & 2); }
 
 /* A program that is killed, and one that is stopped (a debugger, a deadlock): zero, then disabled. */
-START_TEST(test_killed_and_stopped) {
+TEST_LOOP(test_killed_and_stopped, 0, 3) {
   static const int signals[] = {SIGKILL, SIGSTOP, SIGSEGV};
   int signal_ = signals[_i];
   mock_start(&drive, 0);
@@ -181,7 +179,6 @@ START_TEST(test_killed_and_stopped) {
   waitpid(program, NULL, 0);
   mock_stop(&drive);
 }
-END_TEST
 
 /* Whether a process holds the socket of our descriptor. */
 static bool holds(pid_t process, int fd) {
@@ -197,7 +194,7 @@ static bool holds(pid_t process, int fd) {
 }
 
 /* In order: nothing is left to do, and no process stays. */
-START_TEST(test_ended) {
+TEST(test_ended) {
   void *device;
   mock_start(&drive, 0);
   ck_assert_msg(open_servo(&device) == ETHD_OK, "%s", message);
@@ -227,10 +224,9 @@ START_TEST(test_ended) {
   ck_assert_int_eq(kill(process, 0), -1);
   mock_stop(&drive);
 }
-END_TEST
 
 /* The drive is unplugged and found again: the guardian follows to the new connection. */
-START_TEST(test_follows) {
+TEST(test_follows) {
   void *device;
   mock_start(&drive, 0);
   ck_assert_msg(open_servo(&device) == ETHD_OK, "%s", message);
@@ -259,7 +255,6 @@ START_TEST(test_follows) {
   servo->close(device);
   mock_stop(&drive);
 }
-END_TEST
 
 /* The plant's map without a watchdog. A busy machine's drive answers late, and how late isn't what is tried: only where
    times are asserted do answers have the map's own time. */
@@ -277,26 +272,18 @@ static int write_map(const char *path) {
   return status != ETHD_OK;
 }
 
-int main(void) {
-  char path[64];
-  Suite *suite = suite_create("servo_guardian");
-  TCase *t = tcase_create("servo_guardian");
+static char path[64];
+
+int suite_begin(void) {
   const struct sched_param first = {.sched_priority = 50};
   if (getenv("ETHD_STRESS")) (void)!sched_setscheduler(0, SCHED_FIFO, &first); /* a drive has a processor of its own */
   signal(SIGPIPE, SIG_IGN); /* the drive answers to programs that were killed */
   if (!mkdtemp(folder)) return 1;
   snprintf(path, sizeof path, "%s/plant.map", folder);
-  if (write_map(path)) return 1;
-  if (ethd__servo_map_load(path, path, &map, message)) return 1;
-  tcase_set_timeout(t, 120);
-  tcase_add_test(t, test_bound);
-  tcase_add_test(t, test_due);
-  tcase_add_loop_test(t, test_act, 0, 3);
-  tcase_add_loop_test(t, test_killed_and_stopped, 0, 3);
-  tcase_add_test(t, test_ended);
-  tcase_add_test(t, test_follows);
-  suite_add_tcase(suite, t);
-  int failed = rig_run(suite);
+  return write_map(path) || ethd__servo_map_load(path, path, &map, message);
+}
+
+int suite_end(int failed) {
   unlink(path);
   rmdir(folder);
   return failed;

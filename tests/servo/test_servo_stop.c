@@ -15,6 +15,7 @@
 #include "text/text.h"
 #include "unit/device_of.h"
 #include "unit/rig.h"
+#include "unit/suite.h"
 
 #define LINK 0.25 /* m */
 #define RATIO 9.8
@@ -242,7 +243,7 @@ static void spoil(void) {
   ck_assert_int_eq(ethd_text_write(path, "", 0, message), ETHD_OK);
 }
 
-START_TEST(test_stop) {
+TEST_LOOP(test_stop, 0, 48) {
   static const double exchanges[] = {5e-3, 10e-3, 25e-3};
   const trial t = {.exchange = exchanges[_i / 16],
                    .mass = _i & 1 ? 6 : 0.1173,
@@ -262,28 +263,25 @@ START_TEST(test_stop) {
   mock_stop(&drive);
   spoil();
 }
-END_TEST
 
-int main(void) {
-  char *text, *reading, *enable, path[64];
+int suite_begin(void) {
+  char *text, *reading, *enable;
   size_t length;
-  Suite *suite = suite_create("servo_stop");
-  TCase *t = tcase_create("servo_stop");
   if (!mkdtemp(folder) || ethd_text_read("apps/config/plant.map", 1 << 16, &text, &length, message)) return 1;
   reading = strstr(text, "[register reading_x]");
   enable = strstr(text, "[enable]");
   memmove(reading, enable, strlen(enable) + 1);
   registers = strstr(text, "[register control]");
-  tcase_set_timeout(t, 240);
-  tcase_add_loop_test(t, test_stop, 0, 48);
-  suite_add_tcase(suite, t);
-  int failed = rig_run(suite);
+  return 0;
+}
+
+int suite_end(int failed) {
+  char path[64];
   snprintf(path, sizeof path, "%s/plant.map", folder);
   unlink(path);
   snprintf(path, sizeof path, "%s/spoilt", folder);
   bool spoilt = unlink(path) == 0;
   rmdir(folder);
-  free(text);
   if (spoilt && !failed) puts("SKIP: this machine is too busy for a drive in true time; the other trials passed");
   return failed ? failed : spoilt ? 77 : 0;
 }

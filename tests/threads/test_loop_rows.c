@@ -20,6 +20,7 @@
 #include "unit/device_of.h"
 #include "unit/draw.h"
 #include "unit/rig.h"
+#include "unit/suite.h"
 
 #define TRIALS 20
 #define PERIOD 1e-3 /* s */
@@ -188,7 +189,7 @@ static void print(ethd_fault row, const char *when, const char *reaction, const 
 
 static const char *const places[] = {"in the device's read", "in a law", "in the device's write"};
 
-START_TEST(test_dead) {
+TEST_LOOP(test_dead, 0, PLACES) {
   double worst = 0;
   int done = 0, wider = 0;
   char how[120], when[20] = "-";
@@ -205,7 +206,6 @@ START_TEST(test_dead) {
   print(ETHD_FAULT_LOOP, when, "zero", how);
   ck_assert_int_gt(done, 0);
 }
-END_TEST
 
 /* By a second, where half a second is allowed; false: void. The ring is at rest. */
 static int suspend(double period) {
@@ -221,23 +221,15 @@ static int suspend(double period) {
   return armed;
 }
 
-START_TEST(test_suspended) {
+TEST(test_suspended) {
   int k = 0;
   while (k <= WIDER && !suspend(PERIOD * (1 << k))) k++;
   print(ETHD_FAULT_CLOCK, "-", "stop", "the clock that counts a suspension goes on by a second");
   ck_assert_int_le(k, WIDER);
 }
-END_TEST
 
-int main(void) {
+int suite_begin(void) {
   void *found = dlsym(RTLD_NEXT, "clock_gettime");
   memcpy(&true_clock, &found, sizeof found);
-  setvbuf(stdout, NULL, _IOLBF, 0);
-  Suite *suite = suite_create("loop rows");
-  TCase *t = tcase_create("loop rows");
-  tcase_add_loop_test(t, test_dead, 0, PLACES);
-  tcase_add_test(t, test_suspended);
-  tcase_set_timeout(t, 240);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
+  return setvbuf(stdout, NULL, _IOLBF, 0);
 }

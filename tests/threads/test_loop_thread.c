@@ -22,6 +22,7 @@
 #include "ethd/loop.h"
 #include "unit/device_of.h"
 #include "unit/rig.h"
+#include "unit/suite.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define SANITIZED 1
@@ -170,17 +171,14 @@ static void run_filtered(int calls, double early_wake) {
   close_loop();
 }
 
-START_TEST(test_no_call_but_the_sleep) { run_filtered(0, 0); }
-END_TEST
+TEST(test_no_call_but_the_sleep) { run_filtered(0, 0); }
 
-START_TEST(test_no_call_with_early_wake) { run_filtered(0, 1e-4); }
-END_TEST
+TEST(test_no_call_with_early_wake) { run_filtered(0, 1e-4); }
 
 /* The filter bites. */
-START_TEST(test_a_call_is_fatal) { run_filtered(1, 0); }
-END_TEST
+TEST_SIGNAL(test_a_call_is_fatal, 0, 1, SANITIZED ? 0 : 31 /* SIGSYS */) { run_filtered(1, 0); }
 
-START_TEST(test_enable_between_ticks) {
+TEST(test_enable_between_ticks) {
   d.nan_at = 20;
   open_loop(0);
   ck_assert_int_eq(ethd_loop_start(loop, NULL), ETHD_OK);
@@ -195,10 +193,9 @@ START_TEST(test_enable_between_ticks) {
   ck_assert_int_gt(atomic_load(&d.services), 0);
   close_loop();
 }
-END_TEST
 
 /* Rows come in order, and statistics can be read, while it runs. */
-START_TEST(test_rows_while_running) {
+TEST(test_rows_while_running) {
   static ethd_loop_stats s;
   ethd_loop_row row;
   int64_t next = 0;
@@ -212,10 +209,9 @@ START_TEST(test_rows_while_running) {
   }
   close_loop();
 }
-END_TEST
 
 /* All memory is locked, and so is there, before anybody can enable the device: a large program takes long for it. */
-START_TEST(test_locked_before_the_device_starts) {
+TEST_LOOP(test_locked_before_the_device_starts, 0, !SANITIZED) {
   enum { PAGES = 2048 };
   static unsigned char there[PAGES];
   size_t page = (size_t)sysconf(_SC_PAGESIZE), missing = 0;
@@ -229,10 +225,9 @@ START_TEST(test_locked_before_the_device_starts) {
   rig_close(&r);
   ck_assert_int_eq(munmap(room, PAGES * page), 0);
 }
-END_TEST
 
 /* I/O runs below the loop and over everything ordinary, or it is said that it doesn't. */
-START_TEST(test_io_priority) {
+TEST(test_io_priority) {
   open_loop(0);
   ck_assert_int_eq(ethd_loop_start(loop, NULL), ETHD_OK);
   for (int i = 0; i < 2000 && !atomic_load(&d.services); i++) {
@@ -249,7 +244,6 @@ START_TEST(test_io_priority) {
   }
   close_loop();
 }
-END_TEST
 
 static void *nothing(void *self) { return self; }
 
@@ -278,7 +272,7 @@ static int run_with_little_memory(void) {
 }
 
 /* Debian lets everybody lock 8 MB: enough to be granted at first, too little for the stacks of threads that follow. */
-START_TEST(test_little_memory_to_lock) {
+TEST_LOOP(test_little_memory_to_lock, 0, !SANITIZED) {
   int status;
   pid_t child = fork();
   if (child == 0) _exit(run_with_little_memory());
@@ -286,10 +280,9 @@ START_TEST(test_little_memory_to_lock) {
   ck_assert(WIFEXITED(status));
   ck_assert_int_eq(WEXITSTATUS(status), 0);
 }
-END_TEST
 
 /* A machine without PREEMPT_RT or rights is refused, with all its reasons; nothing ran. */
-START_TEST(test_require_rt) {
+TEST(test_require_rt) {
   rig_begin(&r, RIG_WALL, NULL);
   ethd_loop_def def = ethd_loop_default();
   ethd_error error;
@@ -307,7 +300,6 @@ START_TEST(test_require_rt) {
   ethd_loop_destroy(loop);
   rig_close(&r);
 }
-END_TEST
 
 /* Returns 0 if the child's copy of a running loop goes without its threads and without the device. */
 static int in_a_child(void) {
@@ -324,7 +316,7 @@ static int in_a_child(void) {
   return 0;
 }
 
-START_TEST(test_forked) {
+TEST(test_forked) {
   int status;
   opened_by = getpid();
   open_loop(0);
@@ -339,26 +331,4 @@ START_TEST(test_forked) {
   await_reads(reads + 20);
   close_loop();
   opened_by = 0;
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("loop thread");
-  TCase *t = tcase_create("loop thread");
-  tcase_add_test(t, test_no_call_but_the_sleep);
-  tcase_add_test(t, test_no_call_with_early_wake);
-  if (SANITIZED)
-    tcase_add_test(t, test_a_call_is_fatal);
-  else
-    tcase_add_test_raise_signal(t, test_a_call_is_fatal, 31 /* SIGSYS */);
-  tcase_add_test(t, test_enable_between_ticks);
-  tcase_add_test(t, test_rows_while_running);
-  if (!SANITIZED) tcase_add_test(t, test_locked_before_the_device_starts);
-  tcase_add_test(t, test_io_priority);
-  if (!SANITIZED) tcase_add_test(t, test_little_memory_to_lock);
-  tcase_add_test(t, test_require_rt);
-  tcase_add_test(t, test_forked);
-  tcase_set_timeout(t, 60);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }

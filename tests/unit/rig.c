@@ -110,11 +110,3 @@ ethd_event rig_poll(rig *r) {
 motion rig_at(double d, double v, double ahead) {
   return (motion){{0.25 + d, 0.25}, {-v, 0}, {0.25 + d - ahead, 0.25}, {-v, 0}};
 }
-
-int rig_run(Suite *suite) {
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
-}

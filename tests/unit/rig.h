@@ -61,7 +61,4 @@ ethd_event rig_poll(rig *r);
 /* With the default wall: ring at d_re = d, moving at v into it, finger `ahead` m deeper and as fast. */
 motion rig_at(double d, double v, double ahead);
 
-/* check's main: runs the suite, gives main's exit code. */
-int rig_run(Suite *suite);
-
 #endif

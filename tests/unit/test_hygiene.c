@@ -14,6 +14,7 @@
 #include "ethd/config.h"
 #include "ethd/solids.h"
 #include "unit/rig.h"
+#include "unit/suite.h"
 
 void forbid(const char *what);
 #define SCARCE_MEMORY_SEES(function) forbid(function)
@@ -141,7 +142,7 @@ static void remove_files(void) {
 }
 
 /* Each says that there is no memory, once for each allocation it makes, and keeps nothing. */
-START_TEST(test_memory_runs_out) {
+TEST_LOOP(test_memory_runs_out, 0, 7) {
   ethd_status (*const makers[])(void) = {make_controller, parse_scene, parse_solids, make_scene,
                                          prune_scene,     load_config, make_cell};
   write_files();
@@ -164,7 +165,6 @@ START_TEST(test_memory_runs_out) {
   ck_assert_int_eq(live, 0);
   ck_assert_int_ge(failures, 1);
 }
-END_TEST
 
 /* ---- the control thread ---- */
 
@@ -197,7 +197,7 @@ static ethd_scene *large_scene(void) {
 }
 
 /* Every law, estimator and filter; posts, scenes, faults, events. */
-START_TEST(test_a_tap) {
+TEST(test_a_tap) {
   const ethd_transition_law *const laws[] = {&ethd_transition_abrupt, &ethd_transition_smooth, &ethd_transition_offset};
   const ethd_contact_law *const contacts[] = {&ethd_contact_kelvin_voigt, &ethd_contact_spring,
                                               &ethd_contact_hunt_crossley};
@@ -237,10 +237,9 @@ START_TEST(test_a_tap) {
   rig_close(&r);
   for (int i = 0; i < 3; i++) ethd_scene_destroy(scenes[i]);
 }
-END_TEST
 
 /* The traps work: each call must abort. */
-START_TEST(test_traps) {
+TEST_SIGNAL(test_traps, 0, 7, SIGABRT) {
   static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
   void *volatile block = malloc(8);
   in_step = 1;
@@ -251,16 +250,5 @@ START_TEST(test_traps) {
   if (_i == 4) pthread_mutex_lock(&mutex);
   if (_i == 5) (void)!write(2, "", 0);
   if (_i == 6) block = aligned_alloc(64, 64);
-}
-END_TEST
-
-int main(void) {
-  Suite *suite = suite_create("hygiene");
-  TCase *t = tcase_create("hygiene");
-  tcase_add_loop_test(t, test_memory_runs_out, 0, 7);
-  tcase_add_test(t, test_a_tap);
-  tcase_add_loop_test_raise_signal(t, test_traps, SIGABRT, 0, 7);
-  suite_add_tcase(suite, t);
-  return rig_run(suite);
 }
 #endif

@@ -14,6 +14,7 @@
 #include "ethd/fault.h"
 #include "unit/rig.h"
 #include "unit/ring_scene.h"
+#include "unit/suite.h"
 
 #define TICK 1000000
 #define VIRTUAL INT64_C(4000000000000000000)
@@ -197,13 +198,11 @@ static void follow_finger(const char *option, const char *baud) {
   end(&r);
 }
 
-START_TEST(test_finger) { follow_finger(NULL, "500000"); }
-END_TEST
+TEST(test_finger) { follow_finger(NULL, "500000"); }
 
-START_TEST(test_finger_slow) { follow_finger("--slow", "400000"); }
-END_TEST
+TEST(test_finger_slow) { follow_finger("--slow", "400000"); }
 
-START_TEST(test_speed) {
+TEST(test_speed) {
   boards b;
   void *device;
   boards_start(&b, NULL);
@@ -212,7 +211,6 @@ START_TEST(test_speed) {
   ck_assert_msg(strstr(message, "is its baud rate 400000?") != NULL, "%s", message);
   boards_end(&b);
 }
-END_TEST
 
 static const struct {
   const char *command, *back;
@@ -247,7 +245,7 @@ static void meet_fault(run *r, int i) {
 }
 
 /* Each is seen as its row, and gone after it. */
-START_TEST(test_faults) {
+TEST(test_faults) {
   run r;
   begin(&r, NULL, "500000");
   for (int i = 0; i < 200; i++) finger_tick(&r);
@@ -256,7 +254,6 @@ START_TEST(test_faults) {
   ck_assert(figure(&r, "ring port opened") == 2);
   end(&r);
 }
-END_TEST
 
 /* ---- files ---- */
 
@@ -271,19 +268,10 @@ static void tear_down(void) {
   ck_assert_int_eq(rmdir(folder), 0);
 }
 
-int main(void) {
-  if (access(in_build("tests/ring_board"), X_OK) || access(in_build("firmware/proximity_ring.elf"), R_OK)) {
-    puts("SKIP: simavr's library or avr-gcc, for the ring's firmware, is absent");
-    return 77;
-  }
-  Suite *suite = suite_create("ring board");
-  TCase *tc = tcase_create("driver and firmware");
-  tcase_add_checked_fixture(tc, set_up, tear_down);
-  tcase_set_timeout(tc, 200);
-  tcase_add_test(tc, test_speed);
-  tcase_add_test(tc, test_finger);
-  tcase_add_test(tc, test_finger_slow);
-  tcase_add_test(tc, test_faults);
-  suite_add_tcase(suite, tc);
-  return rig_run(suite);
+FIXTURE(set_up, tear_down)
+
+int suite_begin(void) {
+  if (!access(in_build("tests/ring_board"), X_OK) && !access(in_build("firmware/proximity_ring.elf"), R_OK)) return 0;
+  puts("SKIP: simavr's library or avr-gcc, for the ring's firmware, is absent");
+  return 77;
 }
