@@ -1,14 +1,10 @@
 #!/bin/sh
 # Programs that were compiled with other headers than this library's: each is refused in one sentence, and nothing of its
 # memory is written but what it gave.
-set -u
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
+. tests/begin.sh
 if [ -n "${SAN:-}" ]; then echo "SKIP: the program here isn't sanitized, the library would be"; exit 77; fi
 
-cat >"$work/app.c" <<'EOF'
+cat >"$folder/app.c" <<'EOF'
 #include <ethd/ethd.h>
 #include <stdio.h>
 #include <string.h>
@@ -72,7 +68,7 @@ int main(void) {
 EOF
 
 # The same where the setup comes from a configuration, and of a loop.
-cat >"$work/device.c" <<'EOF'
+cat >"$folder/device.c" <<'EOF'
 #include <ethd/config.h>
 #include <ethd/loop.h>
 #include <stdio.h>
@@ -93,13 +89,13 @@ EOF
 
 # Gives what the program says when it was compiled with the headers in a folder.
 says() { # INCLUDE -> sentence
-  $CC -std=gnu11 -O0 -w -I"$1" "$work/app.c" "$BUILD/libethd.a" -ldl -lm -o "$work/app" && "$work/app"
+  $CC -std=gnu11 -O0 -w -I"$1" "$folder/app.c" "$BUILD/libethd.a" -ldl -lm -o "$folder/app" && "$folder/app"
 }
 device_says() { # INCLUDE -> two sentences
-  $CC -std=gnu11 -O0 -w -I"$1" "$work/device.c" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -ljansson -lmodbus \
-    -ldl -lm -lpthread -o "$work/device" && "$work/device"
+  $CC -std=gnu11 -O0 -w -I"$1" "$folder/device.c" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -ljansson -lmodbus \
+    -ldl -lm -lpthread -o "$folder/device" && "$folder/device"
 }
-cat >"$work/sizes.c" <<'EOF'
+cat >"$folder/sizes.c" <<'EOF'
 #include <ethd/config.h>
 #include <ethd/loop.h>
 #include <stdio.h>
@@ -110,9 +106,9 @@ int main(void) {
   return 0;
 }
 EOF
-$CC -std=gnu11 -Iinclude -c "$work/sizes.c" -o "$work/sizes.o" &&
-  $CC "$work/sizes.o" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -ljansson -lmodbus -ldl -lm -lpthread -o "$work/sizes" || fail "no sizes"
-eval "$("$work/sizes")"
+$CC -std=gnu11 -Iinclude -c "$folder/sizes.c" -o "$folder/sizes.o" &&
+  $CC "$folder/sizes.o" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -ljansson -lmodbus -ldl -lm -lpthread -o "$folder/sizes" || fail "no sizes"
+eval "$("$folder/sizes")"
 
 is() { # WHAT INCLUDE EXPECTED
   said=$(says "$2" 2>&1)
@@ -120,12 +116,19 @@ is() { # WHAT INCLUDE EXPECTED
 }
 is "these headers" include "0 bytes, 0, , found 0 of 0"
 other() { # WHAT FILE SED EXPECTED: with one struct changed
-  rm -rf "$work/include"
-  cp -r include "$work/include"
-  sed -i "$3" "$work/include/ethd/$2"
-  cmp -s "include/ethd/$2" "$work/include/ethd/$2" && fail "$1: nothing was changed"
-  is "$1" "$work/include" "$4"
+  rm -rf "$folder/include"
+  cp -r include "$folder/include"
+  sed -i "$3" "$folder/include/ethd/$2"
+  cmp -s "include/ethd/$2" "$folder/include/ethd/$2" && fail "$1: nothing was changed"
+  is "$1" "$folder/include" "$4"
 }
+device_is() { # WHAT CONFIGURATION LOOP: with the last headers
+  said=$(device_says "$folder/include" 2>&1)
+  [ "$said" = "$2
+$3" ] || fail "$1: $said, not $2 and $3"
+}
+cp -r include "$folder/include"
+device_is "these headers" "configuration read" "device is missing"
 other "a shorter setup" control.h '/^  double v_hysteresis;/d' "0 bytes, -11, ethd_setup, found $((setup - 8)) of $setup"
 other "a much shorter setup" control.h 's/_p\[ETHD_PARAMS_MAX\];/_p[1];/' \
   "0 bytes, -11, ethd_setup, found $((setup - 6 * 15 * 8)) of $setup"
@@ -134,48 +137,36 @@ other "a longer setup" control.h 's/^  double swap_time;/  double more[9];\n&/' 
 other "shorter limits" guard.h '/^  double heat_time;/d' "0 bytes, -11, ethd_limits, found $((limits - 8)) of $limits"
 other "longer limits" guard.h 's/^  double torque;/  double more[30];\n&/' \
   "0 bytes, -11, ethd_limits, found $((limits + 240)) of $limits"
+# A driver's file whose limits are longer would run over the library's: its ABI differs.
+$CC -shared -fPIC -w -I"$folder/include" -Itests drivers/hello/hello.c -DHELLO=ethd_driver_plugin -o "$folder/hello.so" || fail "hello isn't built"
+said=$("$BUILD/bin/ethd-check" --driver "$folder/hello.so" 2>&1)
+case $said in
+*"it was built with an ethd_limits of $((limits + 240)) bytes, here it has $limits: build it"*) ;;
+*) fail "a driver with longer limits: $said" ;;
+esac
 other "a longer sense" sense.h 's/^  X(double, q, 2/  X(double, more, 16, "1", "more") \\\n&/' \
   "0 bytes, -11, ethd_sense, found $((sense + 128)) of $sense"
+device_is "a longer sense" "ethd_sense: a struct of other headers; compile again with this version's; found $((sense + 128)), allowed $sense to $sense" \
+  "ethd_loop_row, found $((row + 128)) of $row"
 other "more counters" control.h 's/^  uint64_t ticks, /&more, /' \
   "0 bytes, -11, ethd_counters, found $((counters + 8)) of $counters"
 other "a longer list" control.h 's/ X(counters)$/& X(error)/' "0 bytes, -11, ethd_sizes, found 36 of 32"
 other "a shorter list" control.h 's/ X(counters)$//' "0 bytes, -11, ethd_sizes, found 28 of 32"
 
-device_is() { # WHAT CONFIGURATION LOOP: with the last headers
-  said=$(device_says "$work/include" 2>&1)
-  [ "$said" = "$2
-$3" ] || fail "$1: $said, not $2 and $3"
-}
-rm -r "$work/include" && cp -r include "$work/include"
-device_is "these headers" "configuration read" "device is missing"
-other "a longer sense, once more" sense.h 's/^  X(double, q, 2/  X(double, more, 16, "1", "more") \\\n&/' \
-  "0 bytes, -11, ethd_sense, found $((sense + 128)) of $sense"
-device_is "a longer sense" "ethd_sense: a struct of other headers; compile again with this version's; found $((sense + 128)), allowed $sense to $sense" \
-  "ethd_loop_row, found $((row + 128)) of $row"
 other "a longer configuration" config.h 's/^  uint32_t plugin_count;/&\n  char more[64];/' "0 bytes, 0, , found 0 of 0"
 device_is "a longer configuration" "ethd_config: a struct of other headers; compile again with this version's; found $((config + 64)), allowed $config to $config" \
   "device is missing"
 other "a longer definition" loop.h 's/^  uint32_t rows; .*/&\n  char more[64];/' "0 bytes, 0, , found 0 of 0"
 device_is "a longer definition" "configuration read" "ethd_loop_def, found $((def + 64)) of $def"
 
-# A driver's file whose limits are longer would run over the library's: its ABI differs.
-other "longer limits, once more" guard.h 's/^  double torque;/  double more[30];\n&/' \
-  "0 bytes, -11, ethd_limits, found $((limits + 240)) of $limits"
-$CC -shared -fPIC -w -I"$work/include" -Itests drivers/hello/hello.c -DHELLO=ethd_driver_plugin -o "$work/hello.so" || fail "hello isn't built"
-said=$("$BUILD/bin/ethd-check" --driver "$work/hello.so" 2>&1)
-case $said in
-*"it was built with an ethd_limits of $((limits + 240)) bytes, here it has $limits: build it"*) ;;
-*) fail "a driver with longer limits: $said" ;;
-esac
-
 # A program that was linked before the symbols' version said 0.1 doesn't start.
-echo 'ETHD_0 { global: ethd_*; };' >"$work/old.map"
-echo 'void ethd_setup_default(void) {}' >"$work/old_library.c"
-printf 'void ethd_setup_default(void);\nint main(void) { ethd_setup_default(); }\n' >"$work/old.c"
-$CC -shared -fPIC -Wl,-soname,libethd.so.0 -Wl,--version-script="$work/old.map" "$work/old_library.c" -o "$work/libethd.so.0"
-$CC "$work/old.c" "$work/libethd.so.0" -o "$work/old"
-LD_LIBRARY_PATH=$work "$work/old" || fail "the old program doesn't run with its own library"
-said=$(LD_LIBRARY_PATH=$BUILD "$work/old" 2>&1)
+echo 'ETHD_0 { global: ethd_*; };' >"$folder/old.map"
+echo 'void ethd_setup_default(void) {}' >"$folder/old_library.c"
+printf 'void ethd_setup_default(void);\nint main(void) { ethd_setup_default(); }\n' >"$folder/old.c"
+$CC -shared -fPIC -Wl,-soname,libethd.so.0 -Wl,--version-script="$folder/old.map" "$folder/old_library.c" -o "$folder/libethd.so.0"
+$CC "$folder/old.c" "$folder/libethd.so.0" -o "$folder/old"
+LD_LIBRARY_PATH=$folder "$folder/old" || fail "the old program doesn't run with its own library"
+said=$(LD_LIBRARY_PATH=$BUILD "$folder/old" 2>&1)
 case $said in
 *"version \`ETHD_0' not found"*) ;;
 *) fail "an old program with this library: $said" ;;

@@ -4,7 +4,6 @@ set -eu
 . tests/begin.sh
 tap=$BUILD/bin/ethd-tap
 python=${PYTHON:-python3}
-fail() { echo "$*"; exit 1; }
 
 taps=40
 [ -z "${SAN:-}" ] || taps=4
@@ -28,4 +27,4 @@ done
 sed '3s/,ok,0\./,ok,1./' "$folder/n.csv" >"$folder/n/taps.csv"
 cmp -s "$folder/n.csv" "$folder/n/taps.csv" && fail "nothing was changed"
 "$python" tests/record_metrics.py "$folder/n" n >/dev/null 2>&1 && fail "a changed figure wasn't found"
-exit 0
+exit $failed

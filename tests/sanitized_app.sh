@@ -1,14 +1,10 @@
 #!/bin/sh
 # An application under a sanitizer, beside the library as it is built for everybody: the loop runs with its usual stack, and
 # nothing is reported. ThreadSanitizer gets the suppression of drivers/README.md.
-set -u
+. tests/begin.sh
 [ -z "${SAN:-}" ] || { echo "SKIP: the library itself is sanitized"; exit 77; }
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 
-cat >"$work/app.c" <<'EOF'
+cat >"$folder/app.c" <<'EOF'
 #include <ethd/ethd.h>
 #include <ethd/loop.h>
 #include <stdio.h>
@@ -101,18 +97,18 @@ int main(void) {
 EOF
 
 awk '/^## An application under a sanitizer/ { here = 1 } here && /^```$/ { exit } here && inside; here && /^```text/ { inside = 1 }' \
-  drivers/README.md >"$work/suppressions"
-[ -s "$work/suppressions" ] || fail "drivers/README.md has no suppression"
-export LD_LIBRARY_PATH=$BUILD TSAN_OPTIONS=suppressions=$work/suppressions:halt_on_error=0
+  drivers/README.md >"$folder/suppressions"
+[ -s "$folder/suppressions" ] || fail "drivers/README.md has no suppression"
+export LD_LIBRARY_PATH=$BUILD TSAN_OPTIONS=suppressions=$folder/suppressions:halt_on_error=0
 tried=0
 for sanitizer in thread address,undefined; do
-  $CC -std=gnu11 -O1 -g -fsanitize=$sanitizer -Iinclude "$work/app.c" -L"$BUILD" -lethd-drivers -lethd -o "$work/app" 2>"$work/said" ||
+  $CC -std=gnu11 -O1 -g -fsanitize=$sanitizer -Iinclude "$folder/app.c" -L"$BUILD" -lethd-drivers -lethd -o "$folder/app" 2>"$folder/said" ||
     { echo "no -fsanitize=$sanitizer here"; continue; }
-  timeout 120 "$work/app" >"$work/said" 2>&1
+  timeout 120 "$folder/app" >"$folder/said" 2>&1
   code=$?
-  grep -q 'unexpected memory mapping' "$work/said" && { echo "this kernel's addresses are too random for $sanitizer"; continue; }
+  grep -q 'unexpected memory mapping' "$folder/said" && { echo "this kernel's addresses are too random for $sanitizer"; continue; }
   tried=1
-  [ $code = 0 ] && [ ! -s "$work/said" ] || fail "$sanitizer, exit $code: $(head -n 20 "$work/said")"
+  [ $code = 0 ] && [ ! -s "$folder/said" ] || fail "$sanitizer, exit $code: $(head -n 20 "$folder/said")"
 done
 [ $tried = 1 ] || { echo "SKIP: $CC has no sanitizer"; exit 77; }
 exit $failed

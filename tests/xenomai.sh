@@ -1,12 +1,10 @@
 #!/bin/sh
 # RT=cobalt and RT=mercury with a stand-in for Xenomai: refusals, flags, and the Cobalt branch compiled and run. What the
 # real library has stands in xenomai/cobalt.symbols: neither the stand-in nor our objects know a name beyond it.
-set -u
+. tests/begin.sh
 [ -z "${SAN:-}" ] || { echo "SKIP: the stand-in is tried without sanitizers"; exit 77; }
 at=$BUILD/xenomai
 mkdir -p "$at"
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
 here=$PWD/tests/xenomai
 export XENO_STANDIN_LIB="$at/lib"
 mkdir -p "$at/lib"
