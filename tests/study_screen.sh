@@ -36,24 +36,16 @@ consent1 = Sie nehmen freiwillig teil.
 instruction1 = Tippen Sie einmal an die grüne Wand.
 EOF2
 cat >"$folder/drive.py" <<'EOF2'
-import csv, glob, os, re, signal, sqlite3, subprocess, sys, time
+import csv, glob, os, subprocess, sys, time
+sys.path.insert(0, "tests")
+from study_whole import Hand, ask, count
 study, folder = sys.argv[1:]
-run = subprocess.Popen([study, folder + "/short.study", "--out", folder + "/session", "--screen"],
+session = folder + "/session"
+run = subprocess.Popen([study, folder + "/short.study", "--out", session, "--screen"],
                        stdout=subprocess.PIPE, stderr=open(folder + "/err", "w"), text=True)
 line = run.stdout.readline()
-width, height, x0, scale, y0, _, start, middle, wall = map(float, re.findall(r"-?\d+\.?\d*(?:e[+-]?\d+)?", line))
-mouse = subprocess.Popen(["xdotool", "-"], stdin=subprocess.PIPE, text=True)
-
-def say(words):
-    mouse.stdin.write(words + "\n")
-    mouse.stdin.flush()
-
-def move(x, y):
-    say(f"mousemove {int(x0 + scale * x)} {int(y0 - scale * y)}")
-
-def key(name):
-    say("key " + name)
-    time.sleep(0.15)
+hand = Hand(line)
+hand.pause = 0.15
 
 # a recorded finger, shifted so that it comes to the wall and waits at the start line until it gets there
 files = sorted(glob.glob(os.environ["ETHD_MOTION_DIR"] + "/**/*.csv", recursive=True))
@@ -80,69 +72,61 @@ def look_at_threads():
         except OSError: pass
 
 def tap():
-    move(start, middle)
+    hand.move(hand.start)
     time.sleep(1.2)
     look_at_threads()
     begin = time.monotonic()
     for t, x, y in finger[::4]:
-        x, y = x - last + wall - 0.004, y - at + middle
-        if x > start:
+        x, y = x - last + hand.wall - 0.004, y - at + hand.middle
+        if x > hand.start:
             begin = time.monotonic() - t
             continue
         while time.monotonic() - begin < t: time.sleep(0.001)
-        move(min(x, start), y)
+        hand.move(min(x, hand.start), y)
     time.sleep(1.0)
-
-def ask(sql):
-    """What the session's store says while the session is at work, which holds its lock."""
-    path = folder + "/session/study.sqlite"
-    try: return sqlite3.connect(f"file:{path}?immutable=1", uri=True).execute(sql).fetchall()
-    except sqlite3.DatabaseError: return [] # in the middle of a change
-
-def count(table): return sum(ask(f"select count(*) from {table}")[:1], (0,))[-1]
 
 def surveyed(before):
     """The questions come as soon as a tap was valid or the second was done: answered, gone back to, confirmed."""
-    mine = ask(f"select valid from tap where block = {before + 1} order by id")
+    mine = ask(session, f"select valid from tap where block = {before + 1} order by id")
     if not (mine and (mine[-1][0] == 1 or len(mine) == 2)): return False
     time.sleep(0.5)
-    for name in "space 4 4 Return 2 Return BackSpace 3 Return 5 1 5 Return".split(): key(name)
-    assert count("survey") == before, "three answers without a confirmation"
-    key("Return")
+    hand.keys("space 4 4 Return 2 Return BackSpace 3 Return 5 1 5 Return")
+    assert count(session, "survey") == before, "three answers without a confirmation"
+    hand.keys("Return")
     return True
 
 # Consent, instruction. No key but its own goes on from the first.
-for name in "space Return y space".split(): key(name)
+hand.keys("space Return y space")
 
 # A tap that doesn't begin doesn't count: a pause at the start line, a stop of the hand that lasts longer than a tap.
-key("space")
-move(start, middle); time.sleep(1.2); key("p"); key("space")
+hand.keys("space")
+hand.move(hand.start); time.sleep(1.2); hand.keys("p"); hand.keys("space")
 time.sleep(6.5)
-assert count("tap") == 0
-assert ask("select 1 from event where event = 'pause'")
-key("p")
+assert count(session, "tap") == 0
+assert ask(session, "select 1 from event where event = 'pause'")
+hand.keys("p")
 
 for _ in range(2):
-    key("space")                     # the block's page, or the pause
-    before = count("survey")
+    hand.keys("space")                     # the block's page, or the pause
+    before = count(session, "survey")
     for _ in range(1):
         # Before the tap: one that is valid is followed by the questions at once.
-        move(start, middle); time.sleep(0.5)
-        key("n"); say('type --delay 1 "no letter of this is lost"'); time.sleep(0.4); key("Return")
+        hand.move(hand.start); time.sleep(0.5)
+        hand.keys("n"); hand.say('type --delay 1 "no letter of this is lost"'); time.sleep(0.4); hand.keys("Return")
         tap()
-        if count("tap") and not ask(f"select 1 from answer where block = {before + 1}"): key("p"); key("space")
+        if count(session, "tap") and not ask(session, f"select 1 from answer where block = {before + 1}"): hand.keys("p"); hand.keys("space")
     deadline = time.monotonic() + 60
     while not surveyed(before) and time.monotonic() < deadline and run.poll() is None: tap()
 deadline = time.monotonic() + 20
-while run.poll() is None and time.monotonic() < deadline: key("space")
+while run.poll() is None and time.monotonic() < deadline: hand.keys("space")
 out = line + run.stdout.read()
 assert run.wait(20) == 0, (run.returncode, open(folder + "/err").read(), out)
 assert "frames" in out and "ethd-report" in out, out
 assert not granted or os.SCHED_FIFO in policies, policies
-assert count("survey") == 2 and 2 <= count("tap") <= 4, ask("select * from tap")
+assert count(session, "survey") == 2 and 2 <= count(session, "tap") <= 4, ask(session, "select * from tap")
 print(out.splitlines()[1])
 EOF2
-"$python3" "$folder/drive.py" "$study" "$folder" >"$folder/out" 2>&1
+"$python3" -B "$folder/drive.py" "$study" "$folder" >"$folder/out" 2>&1
 code=$?
 cat "$folder/out"
 [ $code = 0 ] || fail "the session: $(cat "$folder/err")"

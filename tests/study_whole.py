@@ -90,6 +90,7 @@ def simulated(study, folder):
 
 class Hand:
     """The pointer and the keys of whoever sits before the screen."""
+    pause = 0.1  # s after a key
 
     def __init__(self, line):
         number = re.findall(r"-?\d+\.?\d*(?:e[+-]?\d+)?", line)
@@ -103,10 +104,11 @@ class Hand:
     def keys(self, names):
         for name in names.split():
             self.say("key " + name)
-            time.sleep(0.1)
+            time.sleep(self.pause)
 
-    def move(self, x):
-        self.say(f"mousemove {round(self.x0 + self.scale * x)} {round(self.y0 - self.scale * self.middle)}")
+    def move(self, x, y=None):
+        y = self.middle if y is None else y
+        self.say(f"mousemove {round(self.x0 + self.scale * x)} {round(self.y0 - self.scale * y)}")
 
     def tap(self):
         """To the start, a wait there, and at 0.2 m/s into the wall."""
@@ -237,9 +239,10 @@ def judge(folder, taps, attempts):
     print(f"{len(table)} taps of {len(people)} people in {len(blocks)} blocks, {len(survey)} questionnaires")
 
 
-if sys.argv[1] == "--judge":
-    judge(sys.argv[2], int(sys.argv[3]), int(sys.argv[4]))
-else:
-    kills = simulated(*sys.argv[1:]), mouse(*sys.argv[1:])
-    assert sum(kills) >= sum(KILLS.values()), kills
-    print(f"killed {kills[0]} and {kills[1]} times")
+if __name__ == "__main__":  # tests/study_screen.sh takes its hand
+    if sys.argv[1] == "--judge":
+        judge(sys.argv[2], int(sys.argv[3]), int(sys.argv[4]))
+    else:
+        kills = simulated(*sys.argv[1:]), mouse(*sys.argv[1:])
+        assert sum(kills) >= sum(KILLS.values()), kills
+        print(f"killed {kills[0]} and {kills[1]} times")
