@@ -40,8 +40,7 @@ replays() { # FOLDER
   done
 }
 
-# Recordings are compared in the columns that they had before readings carried their noise, before laws learnt, and before
-# devices said what was really commanded and when: where none of that is used, the numbers stay.
+# Columns added later (finger_noise, learnt, commanded, age) are removed before hashing, so that older hashes stay valid.
 without() { # FILE COLUMN...
   "${PYTHON:-python3}" - "$@" <<'END'
 import ast, sys

@@ -32,8 +32,7 @@ md5sum --quiet -c before || fail "an input was changed"
 # devices take what several write
 "$bin/ethd-identify" sines --base mine.plant --out /dev/null --csv /dev/null >said 2>err || fail "/dev/null twice: $(cat err)"
 
-# ---- mounts of its own: standard output that is closed, and a full disk ----
-# ---- a recording on a full disk, whose events end just before a block does: the row about it has its room ----
+# ---- in a mount namespace: closed standard output; a disk that fills up while events are written ----
 if unshare -rm true 2>/dev/null; then
   mkdir disk
   # a copy of /dev, so that nothing can replace the system's
