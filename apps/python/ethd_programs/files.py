@@ -151,13 +151,9 @@ class Output:
         return self._beside(os.path.realpath(self.path), stat.S_IMODE(info.st_mode) & 0o777)
 
     def _refuse_received_links(self) -> None:
-        if self._received is None or not self.path.startswith(self._received.rstrip("/") + "/"):
-            return
-        at = len(self._received.rstrip("/"))
-        while at < len(self.path):
-            end = self.path.find("/", at + 1)
-            at = len(self.path) if end < 0 else end
-            if os.path.islink(self.path[:at]):
+        inside = self._received.rstrip("/") + "/" if self._received else ""
+        for end in re.compile("/|$").finditer(self.path, len(inside)) if inside and self.path.startswith(inside) else ():
+            if os.path.islink(self.path[: end.start()]):
                 raise self._refuse("is a link, which isn't followed in a folder of somebody else; a file is needed")
 
     def _through(self, descriptor: int) -> BinaryIO:

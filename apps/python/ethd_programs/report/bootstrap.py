@@ -10,6 +10,11 @@ Weights = NDArray[np.int32]  #: how often each tap counts: a row for each draw, 
 DRAWS, FEW_DRAWS = 2000, 200  #: of a bootstrap; fewer when they would be more than 2e7 taps in all
 
 
+def middle_of(draws: Numbers) -> Interval:
+    """Where 95 % of the draws lie."""
+    return Interval(*map(float, np.quantile(draws, [0.025, 0.975]))) if len(draws) else Interval()
+
+
 class Clusters:
     """Taps of one sample or of two (side 0 and 1), which the same people made. People are drawn with replacement, then taps
     of each person, since taps of one person are not independent (Davison and Hinkley 1997, 3.8)."""
@@ -55,7 +60,7 @@ class Clusters:
     def interval(self, figure: "Figure", seed: int, fewest: int = FEWEST_PEOPLE) -> Interval:
         """The 95 % percentile interval of the draws; none with fewer people."""
         draws = self.draws(figure, seed) if self.people >= fewest else np.empty(0)
-        return Interval(*map(float, np.quantile(draws, [0.025, 0.975]))) if len(draws) else Interval()
+        return middle_of(draws)
 
 
 #: A figure of the taps, for each draw.

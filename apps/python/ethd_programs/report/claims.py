@@ -2,29 +2,17 @@
 strategies and speeds are what is tested, never the pooled taps."""
 import math
 from dataclasses import dataclass, field
-from typing import Callable, List, Sequence, Tuple
+from typing import Callable, Dict, List, Sequence, Tuple
 
 import numpy as np
 
-from ethd_programs.report.bootstrap import Clusters, Weights
+from ethd_programs.report.bootstrap import Clusters, Weights, middle_of
 from ethd_programs.report.statistics import (FEWEST_PEOPLE, NAN, Interval, Numbers, Published, beside_published,
                                              compare, equivalent, holm, overlapping, t_interval)
 from ethd_programs.report.taps import QUANTITIES, Cell, Quantity, Taps
 
 TOO_FEW, SHOWN, OPEN, CONTRARY = "too few people", "shown", "not shown", "the contrary is shown"
 _LEVEL = 0.05
-
-
-@dataclass(frozen=True)
-class Margins:
-    """How far two strategies may differ and still be called alike."""
-
-    d_max: float  #: mm
-    v_of: float  #: m/s
-    v_rmin: float
-
-    def of(self, quantity: str) -> float:
-        return float(getattr(self, quantity, NAN))
 
 
 # ---- Table 1 ----
@@ -200,10 +188,10 @@ def _judge_overlap(taps: Taps, contrast: _Contrast, out: Part) -> None:
     _directed(out, o.p, o.difference > 0)
 
 
-def _judge(taps: Taps, contrast: _Contrast, margins: Margins, seed: int) -> Part:
+def _judge(taps: Taps, contrast: _Contrast, margins: Dict[str, float], seed: int) -> Part:
     low, high = contrast.low, contrast.high
     if contrast.margin:
-        high = margins.of(contrast.margin)
+        high = margins[contrast.margin]
         low = -high
     out = Part(contrast.what, contrast.unit, low, high)
     values = contrast.of_people(taps)
@@ -257,14 +245,14 @@ def _early(taps: Taps, seed: int) -> Claim:
     part.mean = clusters.here(threshold) if clusters.people else NAN
     draws = clusters.draws(threshold, seed) if part.people >= FEWEST_PEOPLE and not math.isnan(part.mean) else np.empty(0)
     if len(draws):
-        part.test, part.interval = "bootstrap", Interval(*map(float, np.quantile(draws, [0.025, 0.975])))
+        part.test, part.interval = "bootstrap", middle_of(draws)
         below, above = np.count_nonzero(draws < low), np.count_nonzero(draws > high)
         part.p = part.p_shown = (1 + max(below, above)) / (len(draws) + 1)
         part.p_contrary = min(1.0, 2 * (1 + len(draws) - max(below, above)) / (len(draws) + 1))
     return Claim("the finger touches before the ring meets the wall from about 0.5 m/s on", [part])
 
 
-def claims(taps: Taps, margins: Margins, seed: int) -> List[Claim]:
+def claims(taps: Taps, margins: Dict[str, float], seed: int) -> List[Claim]:
     out = [Claim(text, [_judge(taps, c, margins, seed) for c in contrasts]) for text, contrasts in _SENTENCES]
     out.append(_early(taps, seed))
     for claim in out:

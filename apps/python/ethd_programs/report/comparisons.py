@@ -99,7 +99,7 @@ def claims(r: Report) -> None:
                "corrected by Holm for all sentences of this table. The contrary of a sentence is shown if the contrary of one part is: its p is "
                "the smallest p of the parts times their number, corrected by Holm in the same way. &quot;Not shown&quot; says neither. "
                "Smooth and offset are alike when their difference lies within &#177;%g mm (d_max) and &#177;%g and &#177;%g m/s (v_of, v_rmin): "
-               "margins of the study file.</p>\n", r.judged_name, people, plural(people), m.d_max, m.v_of, m.v_rmin)
+               "margins of the study file.</p>\n", r.judged_name, people, plural(people), *m.values())
     r.page.put("<p>Tests: <em>sign flip</em>, the exact permutation test of people's contrasts; <em>TOST</em>, two one-sided t tests; "
                "<em>bootstrap</em> of people and their taps, for the threshold; <em>overlap</em>, where fewer than six people have a valid tap in "
                "all four cells: the strategies' differences of all people who have one at high speed are compared with those of all who have one "
@@ -154,7 +154,7 @@ def within(r: Report, quantity: Quantity, a: Cell, b: Cell, less: Optional[Tuple
     values = r.taps.medians(b, quantity) - r.taps.medians(a, quantity)
     if less:
         values = values - (r.taps.medians(less[1], quantity) - r.taps.medians(less[0], quantity))
-    values, margin = values[~np.isnan(values)], r.margins.of(quantity.key)
+    values, margin = values[~np.isnan(values)], r.margins.get(quantity.key, NAN)
     if not len(values):
         return None
     tested = len(values) >= FEWEST_PEOPLE and not math.isnan(margin)

@@ -1,4 +1,5 @@
 """Sections of a report that count and draw taps: boxes, all figures by cell, reasons, validity, the grid, the table for R."""
+import math
 from typing import Dict, List, Optional
 
 import numpy as np
@@ -240,11 +241,8 @@ def grid(r: Report) -> None:
 
 def _gains(axes: List[Dict[str, List[str]]], point: int) -> List[str]:
     """The values at a combination; the last axis varies fastest."""
-    out: List[str] = []
-    for axis in reversed(axes):
-        point, k = divmod(point, len(axis["values"]))
-        out.insert(0, axis["values"][k])
-    return out
+    shape = [len(axis["values"]) for axis in axes]
+    return [axis["values"][k] for axis, k in zip(axes, np.unravel_index(point % math.prod(shape), shape))]
 
 
 def _grid_row(point: int, gains: List[str], cell: Cell, shown: List[Quantity]) -> List[Text]:

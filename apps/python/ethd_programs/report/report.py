@@ -3,7 +3,6 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import Dict, List, Optional, Union
 
-from ethd_programs.report.claims import Margins
 from ethd_programs.report.output import ReportFolder
 from ethd_programs.report.page import Page
 from ethd_programs.report.pictures import Path, Pictures
@@ -54,7 +53,8 @@ class Report:
         otherwise = self._asked_for()
         self.led = Counter(h if h in LEADERS else otherwise for c in self.taps.cells for h in c.hand.tolist())
         f = self.folder.facts
-        self.margins = Margins(1e3 * f["margin_d_max_m"], f["margin_v_of_mps"], f["margin_v_rmin_mps"])
+        #: how far two strategies may differ and still be called alike, by quantity
+        self.margins = {"d_max": 1e3 * f["margin_d_max_m"], "v_of": f["margin_v_of_mps"], "v_rmin": f["margin_v_rmin_mps"]}
 
     def _asked_for(self) -> str:
         """Who led the hand in tables that don't say it for each tap."""

@@ -47,8 +47,7 @@ def sd_of(values: Numbers) -> float:
 def summarise(values: Numbers) -> Summary:
     if not len(values):
         return Summary(0)
-    least, q1, median, q3, most = np.quantile(values, [0, 0.25, 0.5, 0.75, 1])
-    return Summary(len(values), float(np.mean(values)), sd_of(values), *map(float, (least, q1, median, q3, most)))
+    return Summary(len(values), float(np.mean(values)), sd_of(values), *np.quantile(values, [0, 0.25, 0.5, 0.75, 1]).tolist())
 
 
 # ---- one number for each person ----

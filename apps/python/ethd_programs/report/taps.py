@@ -172,8 +172,7 @@ def _point(cell: str) -> int:
 
 
 def _whole(cell: str) -> int:
-    found = re.match(r"\s*[-+]?[0-9]{1,9}", cell)
-    return int(found.group()) if found else 0
+    return int(cell) if cell.isdecimal() else 0
 
 
 def _speed(word: str, known: Dict[str, Any]) -> Speed:
