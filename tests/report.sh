@@ -25,9 +25,7 @@ here="$folder/a study's"
 
 for margin in -1 0 nan 1e9; do
   printf '[statistics]\nmargin_v_of = %s\n' "$margin" >"$folder/margin.study"
-  "$study" "$folder/margin.study" --out "$folder/bad" >"$folder/out" 2>"$folder/err"
-  code=$?
-  [ $code = 2 ] && grep -q 'margin.study:2: statistics.margin_v_of: found' "$folder/err" || fail "a margin of $margin: exit $code, $(cat "$folder/err")"
+  refuse 2 'margin.study:2: statistics.margin_v_of: found' "$study" "$folder/margin.study" --out "$folder/bad"
 done
 
 # What a study asked for, for programs: each figure of the file that it was asked in, and the device's own.

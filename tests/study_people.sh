@@ -174,8 +174,7 @@ decide --accept "P01-01-00$last" --reason 'it was good'
 counted 3 1 1
 "$study" --verify "$folder/check" >"$folder/out" 2>&1 || fail "sums after a decision: $(cat "$folder/out")"
 for bad in 'P01-01-029:the tap isn.t in this session' 'P01-01:found "P01-01", participant, block and attempt as in P01-02-004'; do
-  "$study" --resume "$folder/check" --reject "${bad%%:*}" --reason x >"$folder/out" 2>"$folder/err"
-  [ $? = 2 ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q "${bad#*:}" "$folder/err" || fail "$bad: $(cat "$folder/err")"
+  refuse 2 "${bad#*:}" "$study" --resume "$folder/check" --reject "${bad%%:*}" --reason x
 done
 if command -v gnuplot >/dev/null; then
   "$BUILD/bin/ethd-report" "$folder/check" >"$folder/out" 2>&1 && grep -q '3 test taps, 3 of them valid, 1 accepted by the experimenter, 1 rejected and left out, in' "$folder/check/report/report.html" ||
