@@ -1,8 +1,6 @@
 #!/bin/sh
 # ethd-study with people, on ethd-run's device: the simulated one with its own finger stands for both. No time is asserted.
 . tests/begin.sh
-server=
-trap 'rm -rf "$folder"; [ -z "$server" ] || kill $server 2>/dev/null' EXIT
 study=$BUILD/bin/ethd-study
 
 cp apps/config/wall.scene "$folder"

@@ -2,8 +2,6 @@
 # ethd-study --screen under Xvfb: a recorded finger moves the mouse, and keys do the rest. How well it taps isn't asserted.
 . tests/begin.sh
 [ -z "${SAN:-}" ] || { echo "SKIP: the window's libraries aren't made for sanitizers"; exit 77; }
-server=
-trap 'rm -rf "$folder"; [ -z "$server" ] || kill $server 2>/dev/null' EXIT
 study=$BUILD/bin/ethd-study
 
 # ---- without a display, without a font: one line, nothing begun is lost ----

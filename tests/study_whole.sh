@@ -5,8 +5,6 @@
 # ETHD_STUDY_WHOLE=1 (make stress): the paper's speeds and three valid taps a cell. No time is asserted.
 . tests/begin.sh
 [ -z "${SAN:-}" ] || { echo "SKIP: the window's libraries aren't made for sanitizers"; exit 77; }
-server=
-trap 'rm -rf "$folder"; [ -z "$server" ] || kill $server 2>/dev/null' EXIT
 study=$BUILD/bin/ethd-study
 speeds=low taps=1 attempts=2 training=1
 [ -z "${ETHD_STUDY_WHOLE:-}" ] || { speeds=low,high; taps=3; attempts=4; training=1; }

@@ -1,5 +1,7 @@
 # For tests: an X server of their own (Xvfb) in $server, its DISPLAY exported. Wants $folder. It stands when a client
-# has been answered: the number that the server writes comes before that.
+# has been answered: the number that the server writes comes before that. It ends with the test.
+server=
+trap 'rm -rf "$folder"; [ -z "$server" ] || kill $server 2>/dev/null' EXIT
 for program in Xvfb xdotool; do
   command -v $program >/dev/null || { echo "FAILED: no $program, which .ci/setup check brings"; exit 1; }
 done
