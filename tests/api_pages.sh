@@ -2,10 +2,11 @@
 # make doc: every public function has a page, and there is no warning. A function without a contract, or whose contract
 # doesn't say which threads may call it, which failures it returns, or the unit of its numbers, is found.
 . tests/begin.sh
+. tests/declared.sh
 made() { B=$folder/build VERSION=1 sh .packaging/doc >"$folder/out" 2>&1; }
 made || { cat "$folder/out"; exit 1; }
 cat "$folder/out"
-for name in $(cat tests/exported-symbols*.txt | grep '^ethd_[a-z]'); do
+for name in $(declared); do
   grep -rqw "$name" "$folder"/build/doc/html/*_8h.html || fail "no page has $name"
 done
 mkdir -p "$folder/tree" && cp -r include .packaging "$folder/tree" && cd "$folder/tree" || exit 1

@@ -37,7 +37,8 @@ if [ -z "${SAN:-}" ]; then # its own time
 fi
 
 # ---- a file may use all that both libraries offer, whether or not its program does ----
-cat tests/exported-symbols.txt tests/exported-symbols-drivers.txt | sort >"$work/offered"
+. tests/declared.sh
+declared >"$work/offered"
 [ "$(wc -l <"$work/offered")" -gt 150 ] || fail "the libraries offer $(wc -l <"$work/offered") symbols"
 {
   sed 's/.*/extern const char &[];/' "$work/offered" # the loader asks for the names alone

@@ -1,64 +1,21 @@
 #!/bin/sh
 # What libethd.so and libethd-drivers.so show, what libethd.so needs; what the control side's objects need.
-#   BUILD=build sh tests/symbols.sh renew    writes tests/exported-symbols*.txt anew
 . tests/begin.sh
+. tests/declared.sh
 LC_ALL=C
 export LC_ALL
 so=$BUILD/libethd.so.0
 fail() { echo "$*"; failed=1; }
 
-# Names marked ETHD_API in the public headers, comments and preprocessor lines left out; ethd_plugin, ethd_driver_plugin are
-# the symbols that a plugin defines.
-declared() {
-  cat include/ethd/*.h | awk '
-    { text = text $0 "\n" }
-    END {
-      while ((i = index(text, "/*")) > 0) {
-        rest = substr(text, i + 2); j = index(rest, "*/")
-        text = substr(text, 1, i - 1) " " substr(rest, j + 2)
-      }
-      n = split(text, lines, "\n"); text = ""; carry = 0
-      for (k = 1; k <= n; k++) {
-        if (!carry && lines[k] !~ /^[ \t]*#/) { sub(/\/\/.*/, "", lines[k]); text = text " " lines[k] }
-        else { carry = (lines[k] ~ /\\$/); continue }
-      }
-      n = split(text, statements, /[;{}]/)
-      for (k = 1; k <= n; k++) {
-        s = statements[k]
-        if (!match(s, /(^|[^A-Za-z0-9_])ETHD_API([^A-Za-z0-9_]|$)/)) continue
-        s = substr(s, RSTART + RLENGTH)
-        if (match(s, /[a-z_][A-Za-z0-9_]*[ \t]*\(/)) {
-          name = substr(s, RSTART, RLENGTH); sub(/[ \t]*\(/, "", name); print name
-        } else {
-          m = split(s, names, ",")
-          for (i = 1; i <= m; i++) { sub(/[ \t]*(\[.*)?$/, "", names[i]); sub(/.*[^A-Za-z0-9_]/, "", names[i]); print names[i] }
-        }
-      }
-    }' | grep -vxE "ethd_plugin|ethd_driver_plugin" | sort -u
-}
-
 exported() { nm -D --defined-only "$1" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort -u; }
 exported "$so" >"$folder/exported"
 exported "$BUILD/libethd-drivers.so.0" >"$folder/exported-drivers"
-if [ "${1:-}" = renew ]; then
-  for kind in '' -drivers; do
-    cp "$folder/exported$kind" "tests/exported-symbols$kind.txt"
-    echo "tests/exported-symbols$kind.txt: $(wc -l <"$folder/exported$kind") symbols"
-  done
-  exit
-fi
 if [ -n "${SAN:-}" ]; then echo "SKIP: a sanitizer's build needs the sanitizer's symbols"; exit 77; fi
 
 cat "$folder/exported" "$folder/exported-drivers" | grep -vE '^ethd_[a-z]' >"$folder/foreign" && fail "exported, but not called ethd_*:" && cat "$folder/foreign"
 for archive in libethd.a libethd-drivers.a; do
   nm -g --defined-only "$BUILD/$archive" | awk 'NF == 3 { print $3 }' | grep -v '^ethd_' >"$folder/foreign" &&
     fail "$archive: global, but not called ethd_*:" && cat "$folder/foreign"
-done
-for kind in '' -drivers; do
-  list=tests/exported-symbols$kind.txt
-  diff "$list" "$folder/exported$kind" >"$folder/diff" && continue
-  fail "exported symbols (>) differ from $list (<); if that is meant: BUILD=$BUILD sh tests/symbols.sh renew"
-  cat "$folder/diff"
 done
 # A declaration belongs to libethd.so or, of the drivers' headers, to libethd-drivers.so.
 declared >"$folder/declared"
