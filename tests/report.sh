@@ -3,6 +3,7 @@
 . tests/begin.sh
 study=$BUILD/bin/ethd-study
 report=$BUILD/bin/ethd-report
+try=yes
 
 cat >"$folder/small.study" <<'END'
 [study]
@@ -43,15 +44,11 @@ for law in facts["strategies"]:
     assert len(rows) == 900 and max(float(r["pad_force_N"]) for r in rows) > 1 > float(rows[-1]["pad_force_N"]), law
 END
 "$study" --describe "$here" --out "$folder/facts" >"$folder/out" 2>&1 && fail "--describe writes over facts"
-"$study" --describe "$here" >"$folder/out" 2>&1
-[ $? = 2 ] && grep -q 'describe needs --out DIR' "$folder/out" || fail "--describe without --out: $(cat "$folder/out")"
+refuse 2 'describe needs --out DIR' "$study" --describe "$here"
 
 # Without gnuplot: one line, before anything is drawn.
 mkdir "$folder/empty"
-PATH=$folder/empty "$report" "$here" >"$folder/out" 2>"$folder/err"
-code=$?
-[ $code = 1 ] && [ "$(wc -l <"$folder/err")" = 1 ] && grep -q 'gnuplot: not found; .*Debian: gnuplot-nox' "$folder/err" ||
-  fail "no gnuplot: exit $code: $(cat "$folder/err")"
+refuse 1 'gnuplot: not found; .*Debian: gnuplot-nox' env PATH="$folder/empty" "$report" "$here"
 [ ! -e "$here/report/report.html" ] || fail "a page without gnuplot"
 if ! command -v gnuplot >/dev/null; then
   [ $failed = 0 ] || exit 1
@@ -241,7 +238,6 @@ drawn "$folder/other2" "$folder/ticks" --tap "${chosen% *}" --point 1 --out "$fo
 [ "$(ls "$folder"/other2/trace-*.png)" = "$folder/other2/trace-${chosen#* }.png" ] || fail "other taps than the chosen one are drawn"
 
 # ---- refusals ----
-try=yes
 bad() { # SED PATTERN: a table that was changed
   rm -rf "$folder/bad"
   cp -r "$folder/grid" "$folder/bad"

@@ -42,10 +42,7 @@ done
 for law in '/../../../x' "x'; system('touch \$canary'); '" '|touch $canary' '<touch $canary' '-e'; do
   copy
   awk -F, -v OFS=, -v law="$law" 'NR > 1 { $5 = law } 1' "$folder/good/taps.csv" >"$folder/bad/taps.csv"
-  report
-  code=$?
-  [ $code = 2 ] && grep -q 'taps.csv:[0-9]*: transition: found .*, a word of up to 31 letters' "$folder/err" ||
-    fail "transition $law: exit $code: $(cat "$folder/err")"
+  refuse 2 'taps.csv:[0-9]*: transition: found .*, a word of up to 31 letters' report
   quiet "transition $law"
   [ "$(find "$folder" -newer "$folder/bad/taps.csv" -name '*trace*' ! -path '*/report/*' | wc -l)" = 0 ] || fail "$law: written elsewhere"
 done

@@ -43,7 +43,6 @@ static ethd_status arm_open(const ethd_device_def *def, void **device, char *mes
   *device = arm;
   return ETHD_OK;
 }
-static ethd_status arm_start(void *d) { return (void)d, ETHD_OK; }
 
 static ethd_status arm_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
   fault_rig *r = device;
@@ -80,7 +79,6 @@ static const ethd_driver driver = {.size = sizeof driver,
                                    .id = "arm",
                                    .brief = "simulated arm",
                                    .open = arm_open,
-                                   .start = arm_start,
                                    .read = arm_read,
                                    .write = arm_write,
                                    .safe = arm_safe,

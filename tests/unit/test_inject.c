@@ -32,7 +32,6 @@ static ethd_status plain_open(const ethd_device_def *def, void **device, char *m
   *device = &p;
   return ETHD_OK;
 }
-static ethd_status plain_start(void *d) { return (void)d, ETHD_OK; }
 
 /* q = t, 2 t; a reading in every third sample, the ray k being k + t. */
 static ethd_status plain_read(void *d, int64_t now, ethd_sense *out) {
@@ -73,22 +72,19 @@ static ethd_status plain_service(void *d, uint32_t unit, int64_t now) {
 static void plain_safe(void *d) { (void)d, p.safes++; }
 static ethd_status plain_stop(void *d) { return (void)d, ETHD_OK; }
 static void plain_close(void *d) { (void)d; }
-static ethd_limits plain_limits(const void *d) { return (void)d, ethd_limits_none(); }
 
 static const ethd_driver driver = {.size = sizeof driver,
                                    .abi = ETHD_DRIVER_ABI,
                                    .id = "plain",
                                    .brief = "plain",
                                    .open = plain_open,
-                                   .start = plain_start,
                                    .read = plain_read,
                                    .write = plain_write,
                                    .units = plain_units,
                                    .service = plain_service,
                                    .safe = plain_safe,
                                    .stop = plain_stop,
-                                   .close = plain_close,
-                                   .limits = plain_limits};
+                                   .close = plain_close};
 static const ethd_driver *const only[] = {&driver, NULL};
 
 /* ---- with a script around it ---- */
