@@ -3,7 +3,8 @@
 # Names marked ETHD_API in the public headers, comments and preprocessor lines left out; ethd_plugin, ethd_driver_plugin are
 # the symbols that a plugin defines.
 declared() {
-  cat include/ethd/*.h | awk '
+  [ $# -gt 0 ] || set -- include/ethd/*.h
+  cat "$@" | awk '
     { text = text $0 "\n" }
     END {
       while ((i = index(text, "/*")) > 0) {

@@ -17,13 +17,15 @@ for archive in libethd.a libethd-drivers.a; do
   nm -g --defined-only "$BUILD/$archive" | awk 'NF == 3 { print $3 }' | grep -v '^ethd_' >"$folder/foreign" &&
     fail "$archive: global, but not called ethd_*:" && cat "$folder/foreign"
 done
-# A declaration belongs to libethd.so or, of the drivers' headers, to libethd-drivers.so.
-declared >"$folder/declared"
-cp "$folder/exported-drivers" "$folder/drivers"
-sort "$folder/exported" "$folder/exported-drivers" | comm -13 "$folder/declared" - >"$folder/unmarked"
-[ -s "$folder/unmarked" ] && fail "exported without an ETHD_API declaration:" && cat "$folder/unmarked"
-sort -u "$folder/exported" "$folder/drivers" | comm -23 "$folder/declared" - >"$folder/undefined"
-[ -s "$folder/undefined" ] && fail "declared ETHD_API, defined nowhere:" && cat "$folder/undefined"
+compare() { # NAME HEADER...: what the library of this name exports is what its headers declare
+  name=$1
+  shift
+  declared "$@" | diff - "$folder/$name" >"$folder/diff" && return
+  fail "$name: ETHD_API in its headers (<) differs from what the library exports (>):"
+  cat "$folder/diff"
+}
+compare exported $(grep -L 'Links from libethd-drivers' include/ethd/*.h)
+compare exported-drivers $(grep -l 'Links from libethd-drivers' include/ethd/*.h)
 
 exact='fabs|floor|ceil|round|trunc|rint|nearbyint|lround|llround|lrint|llrint|fmin|fmax|copysign|fmod|remainder|nextafter|ldexp|frexp|scalbn|modf'
 control="mem(cpy|move|set|cmp|chr)|sqrt|$exact"
