@@ -1,6 +1,6 @@
 #!/bin/sh
-# RT=cobalt and RT=mercury with a stand-in for Xenomai: refusals, flags, and the Cobalt branch compiled and run. What the
-# real library has stands in xenomai/cobalt.symbols: neither the stand-in nor our objects know a name beyond it.
+# RT=cobalt and RT=mercury with a stand-in for Xenomai: refusals, flags, and the Cobalt branch compiled and run. The names
+# that both know, and the real library has, stand in xenomai/cobalt.symbols; look a new one up in that library.
 . tests/begin.sh
 [ -z "${SAN:-}" ] || { echo "SKIP: the stand-in is tried without sanitizers"; exit 77; }
 at=$BUILD/xenomai
@@ -20,7 +20,7 @@ lacks() {
 }
 for version in 3.2 3.3; do
   extra=$(lacks $version $(nm -D --defined-only "$at/lib/libxenomai-standin.so" | awk '$2 == "T" { print $3 }'))
-  [ -z "$extra" ] || fail "the stand-in has what Xenomai $version hasn't: $extra"
+  [ -z "$extra" ] || fail "the stand-in has what cobalt.symbols doesn't give for Xenomai $version: $extra"
 done
 [ "$(lacks 3.3 __real_nanosleep __cobalt_clock_nanosleep)" = __real_nanosleep ] || fail "the list of symbols isn't the real library's"
 
@@ -62,7 +62,7 @@ done
 for version in 3.2 3.3; do
   extra=$(lacks $version $(nm -u "$cobalt"/obj/drivers/runtime/loop/*.o "$cobalt/obj/drivers/servo/"*.o | awk '$2 ~ /^(__cobalt_|__real_|__wrap_|xenomai_|pthread_.*_np$)/ { print $2 }' |
     sort -u | grep -vE '^pthread_(attr_)?[gs]etaffinity_np$'))
-  [ -z "$extra" ] || fail "what Xenomai $version hasn't is called: $extra"
+  [ -z "$extra" ] || fail "what cobalt.symbols doesn't give for Xenomai $version is called: $extra"
 done
 ETHD_XENOMAI_VERSION_FILE=/nowhere "$cobalt/bin/ethd-run" --duration 1 </dev/null >"$at/out" 2>&1
 [ $? = 1 ] && grep -q "this kernel has no Cobalt core" "$at/out" && [ "$(wc -l <"$at/out")" = 1 ] || fail "without Cobalt in the kernel: $(cat "$at/out")"
