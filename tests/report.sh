@@ -3,7 +3,6 @@
 . tests/begin.sh
 study=$BUILD/bin/ethd-study
 report=$BUILD/bin/ethd-report
-try=yes
 
 cat >"$folder/small.study" <<'END'
 [study]
@@ -44,12 +43,13 @@ for law in facts["strategies"]:
     assert len(rows) == 900 and max(float(r["pad_force_N"]) for r in rows) > 1 > float(rows[-1]["pad_force_N"]), law
 END
 "$study" --describe "$here" --out "$folder/facts" >"$folder/out" 2>&1 && fail "--describe writes over facts"
-refuse 2 'describe needs --out DIR' "$study" --describe "$here"
 
 # Without gnuplot: one line, before anything is drawn.
 mkdir "$folder/empty"
 refuse 1 'gnuplot: not found; .*Debian: gnuplot-nox' env PATH="$folder/empty" "$report" "$here"
 [ ! -e "$here/report/report.html" ] || fail "a page without gnuplot"
+try=yes # of usage, argp says a second line
+refuse 2 'describe needs --out DIR' "$study" --describe "$here"
 if ! command -v gnuplot >/dev/null; then
   [ $failed = 0 ] || exit 1
   echo "SKIP: gnuplot (Debian: gnuplot-nox)"

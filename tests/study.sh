@@ -198,7 +198,7 @@ bad() { # PATTERN TEXT [ARGUMENTS]
   shift 2
   refuse 2 "$pattern" "$study" "$folder/bad.study" --out "$folder/bad" "$@"
 }
-kept=$folder/bad try=yes
+kept=$folder/bad
 bad 'bad.study:2: study.tap: no key of this section; name, seed,' '[study]\ntap = 3\n'
 bad 'bad.study:1: "walls": unknown section; study,' '[walls]\n'
 bad 'bad.study:2: study.taps: found "0", a whole number from 1 to ' '[study]\ntaps = 0\n'
