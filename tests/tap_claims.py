@@ -23,7 +23,7 @@ with open(sys.argv[1], newline="") as f:
 cells = [cell(law, speed, [r for r in rows if (r["transition"], r["speed"]) == (law, speed)])
          for speed in ("low", "high") for law in ("abrupt", "smooth", "offset", "predictive")]
 taps = Taps(cells, [str(k) for k in range(1 + max(int(r["tap"]) for r in rows))])
-margins = paper.Margins(0.3, 0.02, 0.02)
+margins = {"d_max": 0.3, "v_of": 0.02, "v_rmin": 0.02} # mm, m/s
 means = {m.name: m for m in paper.means(taps)}
 found = paper.claims(taps, margins, 1)
 wanted = {"the finger touches before the ring meets the wall": paper.CONTRARY}

@@ -121,8 +121,7 @@ typedef struct ethd_facts {
   double *memory;       /* the law's own ETHD_MEMORY numbers, which outlive its contacts: zeroed by create, reset and a
                            change of the law, recorded and replayed */
   double acceleration;  /* m/s^2 that the device can give along n under velocity commands */
-  double room; /* m between a centred finger and the effector's back, which it meets if the effector goes too far
-                           ahead; INFINITY for a plate, which has none */
+  double room; /* m between a centred finger and the inside of a ring or cap; INFINITY: a plate, which may go ahead */
 } ethd_facts;
 #define ETHD_MEMORY 4u
 

@@ -16,8 +16,8 @@
    The second form has no cancellation. Towards the wall its slope is at most 1/t_d; since a command is held for the
    period T, the delay is t_d + T. The finger is ahead of the effector by s = n.(X_f - X) = d_re - d_fr; it touches at s
    = R_r - R_f, the gap. Ahead of the finger the effector needs the lag of tracking and v t_d + v^2 / (2 a). So while the
-   finger comes, the effector goes ahead of it by the gap and `headway` v, as cars keep a time between them. An effector
-   that surrounds the finger goes ahead by at most half of the room behind the finger.
+   finger comes, a plate goes ahead of it by the gap and `headway` v, as cars keep a time between them. A ring or cap
+   keeps the finger in its centre, so that its back or rim doesn't meet the finger.
 
    At the wall the effector is held while the finger touches it, because a noisy tracker would pull it back: in state vo
    its speed along n is f(d), and -f(-d) behind the wall. This brings it to the wall without overshoot, since the
@@ -32,7 +32,7 @@ static const ethd_param params[COUNT] = {
     {"reach", "m", 1e-6, 0.01, 0.001, "distance from the wall within which the effector is held"},
     {"release", "1", -1, 1, 0.5, "share of the gap that the finger comes back before the effector is released"},
     {"range", "m", 0, 10, 0.4, "distance before the wall at which the approach begins"},
-    {"headway", "s", 0, 1, 0.15, "time by which the effector goes ahead of a finger that comes, beyond the gap"},
+    {"headway", "s", 0, 1, 0.15, "time by which a plate goes ahead of a finger that comes, beyond the gap"},
 };
 
 typedef struct approach_state {
@@ -43,8 +43,6 @@ _Static_assert(sizeof(approach_state) <= ETHD_STATE_MAX, "state");
 
 /* Returns f(d), m/s. */
 static double stopping_speed(double d, double a, double late) { return 2 * d / (late + sqrt(late * late + 2 * d / a)); }
-
-static double least(double a, double b) { return a < b ? a : b; }
 
 static double known_or(double value, double other) { return value >= 0 ? value : other; }
 
@@ -65,7 +63,7 @@ static ethd_status step(const double *p, void *block, const ethd_contact *c, eth
     return ETHD_OK;
   }
   out->speed = stopping_speed(c->d_re > 0 ? c->d_re : 0, a, late);
-  out->lead = least(c->v_f > 0 ? p[HEADWAY] * c->v_f : 0, f->room / 2);
+  out->lead = f->room >= (double)INFINITY && c->v_f > 0 ? p[HEADWAY] * c->v_f : 0;
   out->state = c->v_f > out->speed ? ETHD_BRAKING : ETHD_TRANSPARENT;
   return ETHD_OK;
 }

@@ -27,7 +27,8 @@ typedef struct touch {
   double speed, offset; /* of the effector along n, m/s; how deep in the wall it is, m */
 } touch;
 
-/* The effector as the finger meets it: an oblique wall, 0.3 s after the finger has its speed. */
+/* The effector as the finger meets it: an oblique wall, 0.3 s after the finger has its speed. With a headway it is a
+   plate, else a ring. */
 static touch touched(const run *r, const ethd_transition_law *law, double headway) {
   mover m = {.setup = ethd_space_setup_default()};
   m.setup.radius = r->gap + 0.008;
@@ -37,18 +38,24 @@ static touch touched(const run *r, const ethd_transition_law *law, double headwa
   if (law == &ethd_transition_approach)
     ck_assert_int_eq(ethd_space_set(&m.setup, "transition.headway", headway, NULL), ETHD_OK);
   const int late = (int)lround(r->t_d / T);
-  mover_open(&m, late, (ethd_vec3){0, 0, 0});
   const ethd_vec3 n = any_unit();
+  const double face = headway > 0 ? m.setup.radius : 0; /* the place of the plate's point, beyond the ring's centre */
+  m.setup.effector = headway > 0 ? ETHD_EFFECTOR_PLATE : ETHD_EFFECTOR_RING;
+  mover_open(&m, late, ethd_vec3_scale(face, n));
   const double wall = finger_place(r, 4 * r->v / r->a + 0.3) + m.setup.radius;
   touch out = {false, false, 0, 0};
   for (int i = 0; i < 20000 && !out.met; i++) {
-    const double finger = finger_place(r, i * T), x = ethd_vec3_dot(n, m.past[late]);
+    const double finger = finger_place(r, i * T), x = ethd_vec3_dot(n, m.past[late]) - face;
     out.met = finger - x >= r->gap;
     out.steady = i * T >= 4 * r->v / r->a + r->t_d;
-    out.speed = (x - ethd_vec3_dot(n, m.past[late + 1])) / T;
+    out.speed = (x + face - ethd_vec3_dot(n, m.past[late + 1])) / T;
     out.offset = x + m.setup.radius - wall;
     const ethd_surface near = wall_at(m.at, n, wall, 0);
-    mover_step(&m, ethd_vec3_scale(finger, n), ethd_vec3_scale(finger_speed(r, i * T), n), &near, 1);
+    ethd_space_sense s = {.have = ETHD_SPACE_HAVE_FINGER | ETHD_SPACE_HAVE_NORMAL};
+    ethd_vec3_put(n, s.normal);
+    ethd_vec3_put(ethd_vec3_scale(finger, n), s.finger);
+    ethd_vec3_put(ethd_vec3_scale(finger_speed(r, i * T), n), s.finger_v);
+    mover_sense(&m, &s, &near, 1);
     ck_assert_int_eq(m.status, ETHD_OK);
   }
   ethd_space_destroy(m.space);
