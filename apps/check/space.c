@@ -80,7 +80,7 @@ int ethd__report_space(const ethd_space_setup *s, const ethd_device *device) {
   }
   printf("  highest speed          %.3f m/s at which the gap is enough\n", speed_of(&r, r.gap));
   const double headway = param(s, "transition.headway", 0);
-  if (headway > 0)
+  if (headway > 0 && s->effector == ETHD_EFFECTOR_PLATE)
     printf(
         "  headway                %.4g s: on a longer way the effector goes ahead by more than the gap, at 0.4 m/s by "
         "%.4g mm\n",
