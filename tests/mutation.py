@@ -4,8 +4,8 @@ Run by tests/mutation.sh. universalmutator makes the mutants; lines are mutated 
 is drawn with a fixed seed: every prefix of it has each file's share, so that a run may stop and go on at any place. A mutant
 counts when it compiles and when its object differs from the original's. Each is compiled alone and linked into one shared
 library, which all unit tests load, until one fails or BUDGET is spent: its file's own first, then those that have found
-most in their time. Last come the golden outputs, which tell numbers that differ in one bit. Results are lines of JSON in one file; those of a source that
-changed since don't count.
+most in their time. The golden outputs, which detect a difference of one bit, are checked last. Results are lines of JSON in
+one file; results for lines that have changed since are ignored.
 """
 import argparse
 import collections

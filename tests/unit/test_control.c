@@ -30,7 +30,8 @@ TEST(test_stiffness_felt_in_x) {
   rig_close(&r);
 }
 
-/* VO-A, 2 mm inside at 0.1 m/s, finger at the ring's centre: d_fe = -2 + 4.5 = 2.5 mm = d_beta, beta = 1. */
+/* VO-A, 2 mm inside at 0.1 m/s, finger at the ring's centre: d_fe = 1.5 mm, less than d_beta = 2.5 mm, so beta = 0.1 + 0.9 *
+   1.5 / 2.5. */
 TEST(test_smooth_by_hand) {
   rig r;
   rig_begin(&r, RIG_WALL, &ethd_transition_smooth);

@@ -1,6 +1,5 @@
 """Recordings, the folders that the programs write (include/ethd/record.h), read in pieces."""
 import math
-import mmap
 import os
 from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
@@ -8,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ethd_programs.cli import Refusal
-from ethd_programs.files import reason, there
+from ethd_programs.files import opened, reason, there
 from ethd_programs.npy import mapped
 from ethd_programs.table import lines
 
@@ -106,8 +105,9 @@ class Ticks:
     """The ticks of a recording, in pieces, so that the longest one takes little memory."""
 
     def __init__(self, folder: str):
+        self._folder = folder
         try:
-            self._rows = mapped(folder, "tick.npy")
+            self._rows: Any = mapped(folder, "tick.npy")
         except (FileNotFoundError, NotADirectoryError) as e:
             raise Refusal(f"{folder}: no recording, whose tick.npy is needed: {reason(e)}; ethd-run --record makes one") from None
         self.count, self.fields = self._rows.size, fields_of(self._rows.dtype)
@@ -117,16 +117,20 @@ class Ticks:
     def pieces(self) -> Iterator[Tuple[NDArray[Any], NDArray[Any]]]:
         """Rows, and what to add to their instants, ns, so that they never go back: where the recording's time starts again, as
         it does with each tap, it goes on a millisecond later."""
-        last, shift = None, 0
-        for i in range(0, self.count, PIECE):
-            piece = self._rows[i : i + PIECE]
-            time = piece["time_ns"]
-            steps = np.diff(time, prepend=time[0] if last is None else last)
-            shifts = shift + np.cumsum(np.where(steps < 0, 1_000_000 - steps, 0))
-            last, shift = int(time[-1]), int(shifts[-1])
-            yield piece, shifts
-            file: Any = self._rows.base
-            file.madvise(mmap.MADV_DONTNEED)  # else its pages stay in memory
+        last, shift, rows = None, 0, self._rows
+        with opened(self._folder, "tick.npy") as file:  # read, not mapped: a file may be cut short meanwhile
+            file.seek(rows.offset)
+            for i in range(0, self.count, PIECE):
+                size = min(PIECE, self.count - i) * rows.dtype.itemsize
+                data = file.read(size)
+                if len(data) < size:
+                    raise Refusal(f"{self._folder}/tick.npy: was cut short while it was read")
+                piece = np.frombuffer(data, rows.dtype)
+                time = piece["time_ns"]
+                steps = np.diff(time, prepend=time[0] if last is None else last)
+                shifts = shift + np.cumsum(np.where(steps < 0, 1_000_000 - steps, 0))
+                last, shift = int(time[-1]), int(shifts[-1])
+                yield piece, shifts
 
 
 def utc_offset(found: List[RecordedEvent]) -> Optional[int]:
