@@ -60,7 +60,7 @@ fi
 
 # The pictures: of these scripts and these ticks, which are the same everywhere; their pixels depend on gnuplot and its fonts.
 taps=42a6338649e1bebc194926756e0336404236a2839d28dd79638cd85aaecf8729
-arm=cf851ee64961e3fa842cccb6916dd9706e2c31a43d2998a3eb1db4856a0ce277
+arm=0271f95ee736ffbdf50c3041e468ab17066c3e98e7ee883d0b534796221000c3
 "$BUILD/bin/ethd-tap" --taps 400 --transition smooth,offset,predictive --speed high --trace "$folder/taps" >/dev/null
 "$BUILD/bin/ethd-tap" --arm ur5e --transition approach --trace "$folder/arm" >/dev/null
 drawn() { [ "$(cat apps/plot/$1.gp "$folder/$1"/*.csv apps/plot/$1.png | sha256sum)" = "$2  -" ]; }

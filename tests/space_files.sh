@@ -14,7 +14,7 @@ page 't_d  *9 ms: delay of \[ability\], and the period 1 ms'
 page 'at 0.2 m/s  *4.300 mm of the gap of 60.000 mm: the effector stands when the finger arrives'
 page 'at 0.4 m/s  *13.600 mm of the gap'
 page 'highest speed  *0.910 m/s'
-page 'headway  *0.15 s: .* at 0.4 m/s by 60 mm$'
+page 'wait  *the plate stands at the wall while the finger is within 160 mm of it$'
 page 'range  *0.4 m before the wall, enough to stop from 2.459 m/s$'
 page '^0 bounds exceeded$'
 # the page is a configuration that gives the same page

@@ -79,12 +79,10 @@ int ethd__report_space(const ethd_space_setup *s, const ethd_device *device) {
     exceeded += need > r.gap;
   }
   printf("  highest speed          %.3f m/s at which the gap is enough\n", speed_of(&r, r.gap));
-  const double headway = param(s, "transition.headway", 0);
-  if (headway > 0 && s->effector == ETHD_EFFECTOR_PLATE)
-    printf(
-        "  headway                %.4g s: on a longer way the effector goes ahead by more than the gap, at 0.4 m/s by "
-        "%.4g mm\n",
-        headway, 1e3 * 0.4 * headway);
+  const double wait = param(s, "transition.wait", 0);
+  if (wait > 0 && s->effector == ETHD_EFFECTOR_PLATE)
+    printf("  wait                   the plate stands at the wall while the finger is within %.4g mm of it\n",
+           1e3 * (wait + s->radius - s->finger_radius));
   const double range = param(s, "transition.range", NAN);
   if (isnan(range)) return exceeded;
   const bool is_short = s->speed < (double)INFINITY && distance(&r, s->speed) > range;

@@ -3,7 +3,7 @@
 # in: a file of ethd-tap --arm --trace. title, from, to (ms), scale (of the picture) may be left out.
 if (!exists("in") || !exists("out")) { print "arm.gp: set in and out"; exit status 2 }
 if (!exists("title")) title = "A typical tap at 0.4 m/s with a simulated UR5e: the plate stands at the wall when the finger comes"
-if (!exists("from")) from = -300
+if (!exists("from")) from = -700
 if (!exists("to")) to = 90
 if (!exists("scale")) scale = 1.0
 set terminal pngcairo size 1500*scale,520*scale font "Sans,14" fontscale scale linewidth scale background "#ffffff"
@@ -32,7 +32,7 @@ set multiplot title title font "Sans Bold,17"
 set lmargin at screen 0.055
 set rmargin at screen 0.49
 set ylabel "position along n, mm" offset 1
-set yrange [-120:75]
+set yrange [-240:140]
 set key top left Left reverse samplen 1.8
 if (held == held) {set label 1 "held: vo" at held, graph 0.94 offset 0.5 textcolor rgb "#7a7a7a" font "Sans Italic,13"}
 plot 0 with lines lc rgb "#333333" lw 1.6 dt (14,6) title "wall x_e", \

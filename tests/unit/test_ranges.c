@@ -47,7 +47,7 @@ static const row rows[] = {
     {"approach", "reach", 1e-06, 0.01, 0.001},
     {"approach", "release", -1, 1, 0.5},
     {"approach", "range", 0, 10, 0.4},
-    {"approach", "headway", 0, 1, 0.15},
+    {"approach", "wait", 0, 10, 0.1},
     {"lowpass", "cutoff", 1, 10000, 130},
     {"lsq", "window", 2, 32, 8},
     {"foaw", "window", 2, 32, 16},

@@ -27,20 +27,20 @@ typedef struct touch {
   double speed, offset; /* of the effector along n, m/s; how deep in the wall it is, m */
 } touch;
 
-/* The effector as the finger meets it: an oblique wall, 0.3 s after the finger has its speed. With a headway it is a
-   plate, else a ring. */
-static touch touched(const run *r, const ethd_transition_law *law, double headway) {
+/* The effector as the finger meets it: an oblique wall, 0.3 s after the finger has its speed. With `wait` it is a plate,
+   else a ring. */
+static touch touched(const run *r, const ethd_transition_law *law, double wait) {
   mover m = {.setup = ethd_space_setup_default()};
   m.setup.radius = r->gap + 0.008;
   m.setup.finger_radius = m.setup.finger_radius_max = 0.008;
   m.setup.acceleration = r->a;
   ethd_space_transition(&m.setup, law);
   if (law == &ethd_transition_approach)
-    ck_assert_int_eq(ethd_space_set(&m.setup, "transition.headway", headway, NULL), ETHD_OK);
+    ck_assert_int_eq(ethd_space_set(&m.setup, "transition.wait", wait, NULL), ETHD_OK);
   const int late = (int)lround(r->t_d / T);
   const ethd_vec3 n = any_unit();
-  const double face = headway > 0 ? m.setup.radius : 0; /* the place of the plate's point, beyond the ring's centre */
-  m.setup.effector = headway > 0 ? ETHD_EFFECTOR_PLATE : ETHD_EFFECTOR_RING;
+  const double face = wait > 0 ? m.setup.radius : 0; /* the place of the plate's point, beyond the ring's centre */
+  m.setup.effector = wait > 0 ? ETHD_EFFECTOR_PLATE : ETHD_EFFECTOR_RING;
   mover_open(&m, late, ethd_vec3_scale(face, n));
   const double wall = finger_place(r, 4 * r->v / r->a + 0.3) + m.setup.radius;
   touch out = {false, false, 0, 0};
@@ -80,19 +80,19 @@ static double needed(const run *r, double d) {
 
 /* No effector that follows leads the finger, it is t_d late, and changes its speed by a: if it has the speed u when a
    finger of speed v meets it, then  gap >= v t_d + (v - u)^2 / (2 a).  So one that stands there, at the offset e in the
-   wall, has  gap + e >= v t_d + v^2 / (2 a).  With a headway h it is ahead by gap + h v. And `approach` is where it is to
+   wall, has  gap + e >= v t_d + v^2 / (2 a).  A plate that waits is ahead by gap + wait at most. And `approach` is where it is to
    be when the gap leaves the time for it. */
 TEST_LOOP(test_reaction_distance, 0, 4) {
   static const ethd_transition_law *const laws[] = {&ethd_transition_approach, &ethd_transition_approach,
                                                     &ethd_transition_smooth, &ethd_transition_offset};
-  const double headway = _i == 1 ? 0.15 : 0;
+  const double wait = _i == 1 ? 0.1 : 0;
   static const double speeds[] = {0.1, 0.2, 0.4, 0.6}, accelerations[] = {2, 10, 40}, delays[] = {0, 8e-3, 30e-3},
                       gaps[] = {0.01, 0.03, 0.06, 0.12};
   int stood = 0, moved = 0, could = 0;
   for (int k = 0; k < 4 * 3 * 3 * 4; k++) {
     const run r = {speeds[k % 4], accelerations[k / 4 % 3], delays[k / 12 % 3], gaps[k / 36]};
-    const touch at = touched(&r, laws[_i], headway);
-    const double ahead = r.gap + headway * r.v;
+    const touch at = touched(&r, laws[_i], wait);
+    const double ahead = r.gap + wait;
     const double needs = r.v * r.t_d + r.v * r.v / (2 * r.a), sampling = 2 * r.v * T;
     ck_assert(at.met);
     if (!at.steady) { /* the finger is on it while both are free */
