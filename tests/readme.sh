@@ -1,5 +1,5 @@
 #!/bin/sh
-# The README's C: the first block is an application, the second a law. Both compile against the installed
+# The README's C: the first block is an application, the second a law; apps/README has one more application. Both compile against the installed
 # library through pkg-config; the application runs; the law loads. Its picture is what today's programs draw.
 set -eu
 . tests/begin.sh
@@ -9,10 +9,10 @@ fail() { echo "README.md: $*"; exit 1; }
 awk -v to="$folder" '
   /^```c[ \t\r]*$/ { n++; out = to "/" n ".c"; next }
   /^```/ { out = "" }
-  out != "" { print >out }' README.md
-[ -f "$folder/2.c" ] || fail "fewer than two blocks of C"
-for n in 1 2; do
-  example=apps/examples/$(echo 'wall law' | cut -d' ' -f$n).c
+  out != "" { print >out }' README.md apps/README.md
+[ -f "$folder/3.c" ] || fail "fewer than three blocks of C"
+for n in 1 2 3; do
+  example=apps/examples/$(echo 'wall law space' | cut -d' ' -f$n).c
   sed '1,/[*][/]$/d' "$example" | cmp - "$folder/$n.c" || fail "block $n isn't $example behind its first comment"
 done
 grep -q 'main *(' "$folder/1.c" || fail "the first block of C has no main"
