@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "bench/bench.h"
-#include "bench/peers.h"
 #include "bench/tracks.h"
 #include "cli/cli.h"
 #include "ethd/estimate.h"
@@ -131,8 +130,8 @@ static void race(contender *list, size_t count, const ethd__track *track, double
 
 /* ---- one latency ---- */
 
-/* Beside the filters: two readings, and the peer. */
-enum { RUNNERS = ETHD_FILTER_COUNT + 2 };
+/* Beside the filters: two readings. */
+enum { RUNNERS = ETHD_FILTER_COUNT + 1 };
 
 typedef struct field {
   contender list[RUNNERS];
@@ -143,7 +142,7 @@ typedef struct field {
 static const ethd_filter_method order[] = {ETHD_FILTER_HOLD, ETHD_FILTER_ALPHA_BETA, ETHD_FILTER_CV, ETHD_FILTER_CA};
 _Static_assert(sizeof order / sizeof *order == ETHD_FILTER_COUNT, "each filter once");
 
-enum { CV = 3, CA = 4, PEER = ETHD_FILTER_COUNT + 1 }; /* in the field */
+enum { HOLD = 0, CV = 3, CA = 4 }; /* in the field */
 
 static ethd_filter filter_of(ethd_filter_method method, const tuning *t) {
   const ethd_method *m = &ethd_filter_methods[method];
@@ -158,8 +157,8 @@ static ethd_filter filter_of(ethd_filter_method method, const tuning *t) {
   return f;
 }
 
-/* Gathers the contenders: hold, two readings, alpha-beta, cv, ca, the peer, which is tuned as ca is. */
-static void gather(field *f, const tuning *t, const ethd__peer_filter *peer) {
+/* Gathers the contenders: hold, two readings, alpha-beta, cv, ca. */
+static void gather(field *f, const tuning *t) {
   f->count = 0;
   for (int i = 0; i < ETHD_FILTER_COUNT; i++) {
     ethd_filter_method m = order[i];
@@ -167,10 +166,6 @@ static void gather(field *f, const tuning *t, const ethd__peer_filter *peer) {
     f->list[f->count++] = (contender){ethd_filter_methods[m].id, filter_work, &f->filters[m]};
     if (i == 0) f->list[f->count++] = (contender){"two readings", two_readings, NULL};
   }
-  if (!peer) return;
-  const double *ca = t[ETHD_FILTER_CA].value;
-  f->list[f->count++] =
-      (contender){peer->name, peer->work, peer->create(ETHD__TRACK_PERIOD, ca[0], ca[1], ETHD__TRACK_NOISE)};
 }
 
 static void compare(FILE *csv, const field *f, const char *set, double latency, const ethd__tracks *sets, size_t count,
@@ -186,37 +181,42 @@ static void compare(FILE *csv, const field *f, const char *set, double latency, 
   printf("  %5.1f %%\n", 100 * (1 - errors[CA] / errors[CV]));
 }
 
-static void one_latency(FILE *csv, int l, double seconds, const ethd__peer_filter *peer) {
-  double latency = latencies[l], ns[RUNNERS], errors[RUNNERS];
+static void one_latency(FILE *csv, int l, double seconds) {
+  static const tuning defaults[ETHD_FILTER_COUNT];
+  double latency = latencies[l], ns[RUNNERS], errors[RUNNERS] = {0};
   ethd__tracks reaches = ethd__tracks_reaches(REACHES, latency), recorded[SETS_MAX];
   size_t sets = ethd__tracks_recorded(latency, recorded, SETS_MAX);
   field f;
-  gather(&f, tunings[l], peer);
+  gather(&f, tunings[l]);
   race(f.list, f.count, &reaches.at[0], seconds, ns);
   printf("  %-36s", "rms error, mm");
   for (size_t i = 0; i < f.count; i++) printf(" %12s", f.list[i].name);
   printf("  ca under cv\n");
-  if (sets) compare(csv, &f, "all recorded", latency, recorded, sets, ns, errors);
   compare(csv, &f, "reaches", latency, &reaches, 1, ns, errors);
+  double gain = 1 - errors[CA] / errors[CV];
+  gather(&f, defaults);
+  if (sets) compare(csv, &f, "recorded", latency, recorded, sets, ns, errors);
   printf("  %-36s", "ns a tick");
   for (size_t i = 0; i < f.count; i++) printf(" %12.1f", ns[i]);
-  double gain = 1 - errors[CA] / errors[CV];
   printf("\n  goal: ca at least %.0f %% under cv on reaches at %.0f ms: %.1f %%, %s\n", 100 * goals[l], 1e3 * latency,
          100 * gain, bench_verdict(gain >= goals[l]));
-  if (!sets && l == 0) printf("SKIP: recorded movements: none in ETHD_MOTION_DIR\n");
-  if (peer) peer->destroy(f.list[PEER].self);
+  if (sets)
+    printf("  goal: ca under cv under hold on recorded movements at %.0f ms, %s\n", 1e3 * latency,
+           bench_verdict(errors[CA] < errors[CV] && errors[CV] < errors[HOLD]));
+  else if (l == 0)
+    printf("SKIP: recorded movements: none in ETHD_MOTION_DIR\n");
   ethd__tracks_free(&reaches);
   for (size_t s = 0; s < sets; s++) ethd__tracks_free(&recorded[s]);
 }
 
 void bench_filters(const char *folder, int quick) {
   printf("finger filters: readings at 300 Hz with 0.1 mm of noise, output every ms\n");
-  const ethd__peer_filter *peer = bench_peer("eigen", "peer_filter");
   FILE *csv =
       bench_csv(folder, "filters",
                 "# simulated readings at 300 Hz, noise 0.1 mm (sd, each axis); error: m, rms over ticks of 1 ms\n"
-                "# and both axes; reaches: 40 of minimum jerk, 0.5 to 1.1 m/s; each filter tuned to them\n",
+                "# and both axes; reaches: 40 of minimum jerk, 0.5 to 1.1 m/s, each filter tuned to them; recorded:\n"
+                "# hand movements, filters as they are by default\n",
                 BENCH_RACE);
-  for (int l = 0; l < LATENCIES; l++) one_latency(csv, l, quick ? 0.1 : 1, peer);
+  for (int l = 0; l < LATENCIES; l++) one_latency(csv, l, quick ? 0.1 : 1);
   bench_close();
 }

@@ -2,9 +2,9 @@
 #include <math.h>
 
 #include "bench/bench.h"
+#include "bench/fit_trials.h"
 #include "cli/cli.h"
 #include "ethd/ethd.h"
-#include "unit/fit_trials.h"
 
 enum { TRIALS_MAX = 40000, TIMED = 512 };
 

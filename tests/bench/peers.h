@@ -41,16 +41,6 @@ typedef struct ethd__peer_following {
   void (*destroy)(void *self);
 } ethd__peer_following;
 
-/* `peer_filter`: a Kalman filter of constant acceleration with 3x3 matrices, alike for both axes, which does what the
-   finger filter's `ca` does: it starts in the same way, has the same fading memory, and moves from sample to sample. An item of `in` is
-   a tick's reading x y and its age in s, NaN without one; an item of `out` is x y now. A tick takes `period`. */
-typedef struct ethd__peer_filter {
-  const char *name;
-  void *(*create)(double period, double jerk, double memory, double noise);
-  void (*work)(void *self, const double (*in)[3], double (*out)[2], size_t count); /* starts anew */
-  void (*destroy)(void *self);
-} ethd__peer_filter;
-
 /* `peer_scene`: segments {x1, y1, x2, y2} of the plane; the array stays where it is. */
 typedef struct ethd__peer_scene {
   const char *name;
@@ -61,15 +51,6 @@ typedef struct ethd__peer_scene {
   size_t (*bytes)(void *self); /* NULL: unknown */
   void (*destroy)(void *self);
 } ethd__peer_scene;
-
-/* `peer_mesh`: the surfaces within `range`, m, of x in a mesh that a file holds. */
-struct ethd_surface;
-typedef struct ethd__peer_mesh {
-  const char *name;
-  void *(*create)(const char *path); /* NULL: it can't be read */
-  uint32_t (*surfaces)(void *self, const double x[3], double range, struct ethd_surface *out, uint32_t most);
-  void (*destroy)(void *self);
-} ethd__peer_mesh;
 
 /* Returns the squared distance from x to a segment. */
 static inline double ethd__peer_squared(const double s[4], const double x[2]) {

@@ -146,8 +146,8 @@ static void enter_all(const ethd__problem *problem) {
   static const double tolerances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
   for (size_t i = 0; i < sizeof tolerances / sizeof *tolerances; i++) enter(problem, "libethd", tolerances[i]);
   for (double h = 200e-6; h > 10e-6; h /= 2) enter(problem, "libethd with fixed steps", h)->fixed = 1;
-  static const char *const libraries[] = {"gsl", "sundials", "odeint", "mujoco"};
-  for (int l = 0; l < 4; l++) {
+  static const char *const libraries[] = {"gsl", "sundials", "mujoco"};
+  for (int l = 0; l < 3; l++) {
     const ethd__peer_ode *peer = bench_peer(libraries[l], "peer_ode");
     for (; peer && peer->name; peer++)
       for (double t = peer->loosest; t > 0.7 * peer->tightest; t /= peer->ratio) enter_peer(problem, peer, t);

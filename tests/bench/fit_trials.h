@@ -3,8 +3,8 @@
    A ray in direction u meets the circle about c at p = rho u: d rho / d (c, R) = (n, 1) / (n.u), n the circle's normal
    at p. With equal and independent noise of variance s^2 the information is the sum of g g^T / s^2 over the rays, and
    no unbiased estimate of c has less mean squared error than the trace of its inverse over c (Cramer, Rao). */
-#ifndef ETHD_TESTS_FIT_TRIALS_H
-#define ETHD_TESTS_FIT_TRIALS_H
+#ifndef ETHD_TESTS_BENCH_FIT_TRIALS_H
+#define ETHD_TESTS_BENCH_FIT_TRIALS_H
 
 #include "ethd/estimate.h"
 #include "unit/draw.h"
