@@ -3,10 +3,10 @@
 #define ETHD_TESTS_FINGER_FILTERS_H
 
 #include <check.h>
-#include <stdio.h>
-#include <stdlib.h>
+#include <string.h>
 
-#include "finger_run.h"
+#include "draw.h"
+#include "ethd/estimate.h"
 
 #define T 1e-3
 

@@ -1,4 +1,5 @@
-/* What the filters compute: against matrices in long double, by hand, gated, and side by side on reaches. */
+/* What the filters compute: against matrices in long double, by hand, and gated. Their errors side by side, on reaches and
+   on recorded movements: tests/bench_quick.sh. */
 #include "finger_filters.h"
 #include "kalman_matrices.h"
 #include "unit/suite.h"
@@ -84,7 +85,7 @@ TEST_LOOP(test_gate, 0, 2) {
 
 /* A finger that jumped for good is found again with the fifth reading; four bad ones do nothing. */
 TEST_LOOP(test_gated_in_a_row, 0, 2) {
-  ethd_filter f = finger_filter(_i ? ETHD_FILTER_CV : ETHD_FILTER_CA, NULL, 0);
+  ethd_filter f = with(_i ? ETHD_FILTER_CV : ETHD_FILTER_CA, NULL, NULL);
   ethd_filter_state s;
   memset(&s, 0, sizeof s);
   ramp(&f, &s, 0.1, 2e-3);
@@ -119,50 +120,4 @@ TEST(test_alpha_beta_by_hand) {
   ck_assert_double_eq_tol(s.x[0], 1.7, 1e-15);
   ck_assert_double_eq_tol(s.v[0], 2 + 0.25 * 0.4 / 0.25, 1e-15);
   ck_assert_double_eq_tol(out_x(&f, &s), 1.7 + 2.4 * 0.25, 1e-15);
-}
-
-/* ---- accuracy ---- */
-
-typedef struct reach {
-  double length, duration, angle;
-} reach;
-
-/* Minimum jerk: s = 10 u^3 - 15 u^4 + 6 u^5, peak speed 15/8 length / duration; 50 ms of rest around. */
-static ethd_vec reach_at(const void *data, double t) {
-  const reach *r = data;
-  double u = fmin(1, fmax(0, (t - 0.05) / r->duration)), s = r->length * u * u * u * (10 - 15 * u + 6 * u * u);
-  return (ethd_vec){s * cos(r->angle), s * sin(r->angle)};
-}
-
-enum { REACHES = 40 };
-
-TEST(test_extrapolation) {
-  static reach reaches[REACHES];
-  finger_path paths[REACHES];
-  const double goal[] = {0.15, 0.25, 0.30};
-  for (uint64_t i = 0; i < REACHES; i++) {
-    double speed = draw(3 * i, 0.5, 1.1), length = draw(3 * i + 1, 0.1, 0.3);
-    reaches[i] = (reach){length, 1.875 * length / speed, draw(3 * i + 2, 0, 6.28)};
-    paths[i] = (finger_path){reach_at, &reaches[i], reaches[i].duration + 0.1};
-  }
-  printf("extrapolation error rms, mm: minimum-jerk reaches of 0.5 to 1.1 m/s, 300 Hz, 0.1 mm noise\n");
-  printf("  latency ms   hold  alpha-beta      cv (m/s^2)      ca (m/s^3)  gain    defaults: cv     ca\n");
-  for (int l = 0; l < 3; l++) {
-    double latency = finger_latencies[l], q = 0, j = 0, b = 0;
-    finger_error by[ETHD_FILTER_COUNT] = {{0, 0, 0}};
-    for (int m = 0; m < ETHD_FILTER_COUNT; m++) {
-      ethd_filter f = finger_filter((ethd_filter_method)m, NULL, 0);
-      for (int k = 0; k < REACHES; k++) finger_run(&f, &paths[k], latency, (uint64_t)k, &by[m]);
-      ck_assert_int_eq(by[m].gated, 0);
-    }
-    double hold = finger_rms(by[ETHD_FILTER_HOLD]);
-    double fixed = finger_best(ETHD_FILTER_ALPHA_BETA, "beta", 0.1, 9, paths, REACHES, latency, &b);
-    double cv = finger_best(ETHD_FILTER_CV, "acceleration", 3, 8, paths, REACHES, latency, &q);
-    double ca = finger_best(ETHD_FILTER_CA, "jerk", 80, 9, paths, REACHES, latency, &j);
-    printf("  %10.0f  %.3f %11.4f  %.4f (%4.1f)   %.4f (%4.0f)  %4.1f %%          %.4f  %.4f\n", 1e3 * latency, hold,
-           fixed, cv, q, ca, j, 100 * (1 - ca / cv), finger_rms(by[ETHD_FILTER_CV]), finger_rms(by[ETHD_FILTER_CA]));
-    ck_assert(ca < cv && cv < hold && fixed < hold);
-    ck_assert_double_le(ca, (1 - goal[l]) * cv);
-    ck_assert_double_le(finger_rms(by[ETHD_FILTER_CA]), 1.15 * ca);
-  }
 }

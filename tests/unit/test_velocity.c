@@ -1,4 +1,4 @@
-/* Each estimator against a second derivation in long double, and all of them side by side. */
+/* Each estimator against a second derivation in long double. */
 #include "ethd/estimate.h"
 
 #include <math.h>
@@ -229,61 +229,6 @@ TEST_LOOP(test_not_finite_stays, 0, ETHD_VELOCITY_COUNT) {
   ck_assert(!isfinite(ethd_velocity_step(&v, &s, NAN, 0, T)));
   memset(&s, 0, sizeof s);
   ck_assert(ethd_velocity_step(&v, &s, 1, 0, T) == 0);
-}
-
-/* Lag against noise: 48000 counts a turn (ratio 12) at 0.25 m, error rms in mm/s. */
-typedef struct figure {
-  double steady, braking;
-} figure;
-
-static double at_ring(ethd_velocity *v, int run, double v0, double a, int n) {
-  const double count = (double)(2 * PI_L / 48000), link = 0.25;
-  ethd_velocity_state s;
-  double x = draw((uint64_t)run, 0, 1) * count, w = v0 / link, sum = 0;
-  memset(&s, 0, sizeof s);
-  for (int k = -200; k < n; k++) {
-    double out = ethd_velocity_step(v, &s, count * rint(x / count), 0, T);
-    if (k >= 0) sum += (out - w) * (out - w);
-    double next = k >= 0 ? fmax(0, w - a / link * T) : w;
-    x += (w + next) / 2 * T;
-    w = next;
-  }
-  return sqrt(sum / n) * link * 1e3;
-}
-
-static figure measure(ethd_velocity_method method, const double *p) {
-  ethd_velocity v = prepared(method, p);
-  figure f = {0, 0};
-  for (int run = 0; run < 50; run++) {
-    double steady = at_ring(&v, run, 0.030, 0, 2000), braking = at_ring(&v, run, 0.4, 45, 10);
-    f.steady += steady * steady / 50;
-    f.braking += braking * braking / 50;
-  }
-  return (figure){sqrt(f.steady), sqrt(f.braking)};
-}
-
-TEST(test_lag_against_noise) {
-  const double fifty = 50, wide[] = {32, 132e-6}, count[] = {16, 132e-6}, kalman[] = {38e-6, 50, 0.0073};
-  figure difference = measure(ETHD_VELOCITY_DIFFERENCE, NULL), slow = measure(ETHD_VELOCITY_LOWPASS, &fifty);
-  figure lowpass = measure(ETHD_VELOCITY_LOWPASS, NULL), lsq = measure(ETHD_VELOCITY_LSQ, NULL);
-  figure foaw = measure(ETHD_VELOCITY_FOAW, count), foaw32 = measure(ETHD_VELOCITY_FOAW, wide);
-  figure filter = measure(ETHD_VELOCITY_KALMAN, kalman);
-  const char *names[] = {"difference", "lowpass 50", "lowpass 130",           "lsq 8",
-                         "foaw 16",    "foaw 32",    "kalman, torque unknown"};
-  figure all[] = {difference, slow, lowpass, lsq, foaw, foaw32, filter};
-  printf("velocity error rms, mm/s       at 30 mm/s  braking from 0.4 m/s at 45 m/s^2\n");
-  for (int i = 0; i < 7; i++) printf("  %-24s %12.2f %10.1f\n", names[i], all[i].steady, all[i].braking);
-
-  /* A count a tick is 32.7 mm/s and comes in a share p = 0.917 of the ticks: rms 32.7 sqrt(p (1 - p)).
-   */
-  ck_assert_double_eq_tol(difference.steady, 32.725 * sqrt(0.9167 * 0.0833), 0.1);
-  ck_assert(foaw32.steady < foaw.steady && foaw.steady < lsq.steady && lsq.steady < lowpass.steady);
-  ck_assert(slow.steady < lowpass.steady && lowpass.steady < difference.steady);
-  ck_assert(filter.steady < difference.steady);
-  ck_assert_double_le(foaw.steady, 0.3);
-  ck_assert(difference.braking < foaw.braking && foaw.braking < lowpass.braking);
-  ck_assert(lowpass.braking < slow.braking && slow.braking < lsq.braking);
-  ck_assert_double_eq_tol(foaw.braking, foaw32.braking, 0.5);
 }
 
 TEST(test_refusals) {
