@@ -165,8 +165,8 @@ LIBRARIES := $(foreach l,ethd ethd-drivers,$(B)/lib$(l).a $(B)/lib$(l).so.0 $(B)
 DRIVERS_LIBS := -linih -ljansson -lmodbus
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
-# A script may run any program, and locale.sh runs unit tests.
-tests: $(if $(call wanted,locale),$(UNIT),$(addprefix $(B)/tests/,$(call wanted,$(notdir $(UNIT))))) $(PLUGINS) \
+# A script may run any program, and two run unit tests.
+tests: $(if $(call wanted,locale fp_traps),$(UNIT),$(addprefix $(B)/tests/,$(call wanted,$(notdir $(UNIT))))) $(PLUGINS) \
   $(if $(call wanted,$(basename $(notdir $(SCRIPTS)))),all $(if $(SAN),,man) $(TOOLS_C:%.c=$(B)/%) $(B)/tests/bench $(RING_PARTS))
 $(B)/tests/test_servo_container: $(B)/bin/ethd-run
 
