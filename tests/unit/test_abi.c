@@ -15,260 +15,149 @@
 #error "excess precision changes the bits"
 #endif
 
-#if defined(__LP64__)
-#define AT(type, field, offset, bytes)                       \
-  _Static_assert(offsetof(type, field) == (offset), #field); \
-  _Static_assert(sizeof(((type *)0)->field) == (bytes), #field)
-#define SIZE(type, bytes, align)                  \
-  _Static_assert(sizeof(type) == (bytes), #type); \
-  _Static_assert(_Alignof(type) == (align), #type)
+/* Each type with its size, 0 where it may grow at its end, and its fields with theirs, in order: offsets follow. */
+typedef struct field {
+  const char *name;
+  size_t at, bytes, expected;
+} field;
 
+typedef struct layout {
+  const char *type;
+  size_t bytes, align, expected;
+  field fields[32];
+} layout;
+
+#define TEXT_OF(word) #word
+#define TEXT(word) TEXT_OF(word)
+#define TYPE(expected) TEXT(T), sizeof(T), _Alignof(T), expected
+#define AT(name, expected) {#name, offsetof(T, name), sizeof(((T *)0)->name), expected}
+
+static const layout layouts[] = {
 /* Frozen within an ABI. */
-SIZE(ethd_param, 48, 8);
-AT(ethd_param, name, 0, 8);
-AT(ethd_param, unit, 8, 8);
-AT(ethd_param, min, 16, 8);
-AT(ethd_param, max, 24, 8);
-AT(ethd_param, def, 32, 8);
-AT(ethd_param, brief, 40, 8);
-
+#define T ethd_param
+    {TYPE(48), {AT(name, 8), AT(unit, 8), AT(min, 8), AT(max, 8), AT(def, 8), AT(brief, 8)}},
+#undef T
 /* Given to a law by the controller: they grow at their ends. */
-SIZE(ethd_contact, 128, 8);
-AT(ethd_contact, point, 0, 24);
-AT(ethd_contact, n, 24, 24);
-AT(ethd_contact, d_re, 48, 8);
-AT(ethd_contact, d_fe, 56, 8);
-AT(ethd_contact, d_fr, 64, 8);
-AT(ethd_contact, v, 72, 8);
-AT(ethd_contact, v_f, 80, 8);
-AT(ethd_contact, d_beta, 88, 8);
-AT(ethd_contact, period, 96, 8);
-AT(ethd_contact, age, 104, 8);
-AT(ethd_contact, object, 112, 4);
-AT(ethd_contact, body, 116, 4);
-AT(ethd_contact, facts, 120, 8);
-
-SIZE(ethd_facts, 112, 8);
-AT(ethd_facts, mass, 0, 8);
-AT(ethd_facts, force, 8, 8);
-AT(ethd_facts, applied, 16, 8);
-AT(ethd_facts, friction, 24, 8);
-AT(ethd_facts, viscous, 32, 8);
-AT(ethd_facts, delay, 40, 8);
-AT(ethd_facts, lag, 48, 8);
-AT(ethd_facts, ring_radius, 56, 8);
-AT(ethd_facts, finger_radius, 64, 8);
-AT(ethd_facts, finger_age, 72, 8);
-AT(ethd_facts, finger_a, 80, 8);
-AT(ethd_facts, memory, 88, 8);
-AT(ethd_facts, acceleration, 96, 8);
-AT(ethd_facts, room, 104, 8);
-
-SIZE(ethd_past, 48, 8);
-AT(ethd_past, offset, 0, 8);
-AT(ethd_past, d_re, 8, 8);
-AT(ethd_past, v, 16, 8);
-AT(ethd_past, age, 24, 8);
-AT(ethd_past, since, 32, 8);
-AT(ethd_past, state, 40, 4);
-
-SIZE(ethd_vec3, 24, 8);
-AT(ethd_vec3, x, 0, 8);
-AT(ethd_vec3, y, 8, 8);
-AT(ethd_vec3, z, 16, 8);
-
-SIZE(ethd_vec, 16, 8);
-AT(ethd_vec, x, 0, 8);
-AT(ethd_vec, y, 8, 8);
-
-SIZE(ethd_tracking_in, 88, 8);
-AT(ethd_tracking_in, eps_q, 0, 16);
-AT(ethd_tracking_in, eps_q_dot, 16, 16);
-AT(ethd_tracking_in, eps_x, 32, 16);
-AT(ethd_tracking_in, eps_v, 48, 16);
-AT(ethd_tracking_in, period, 64, 8);
-AT(ethd_tracking_in, finger_v, 72, 16);
-
-SIZE(ethd_ruling, 72, 8);
-AT(ethd_ruling, beta, 0, 8);
-AT(ethd_ruling, share, 8, 8);
-AT(ethd_ruling, offset, 16, 8);
-AT(ethd_ruling, damping, 24, 8);
-AT(ethd_ruling, feed, 32, 8);
-AT(ethd_ruling, argument, 40, 8);
-AT(ethd_ruling, state, 48, 4);
-AT(ethd_ruling, lead, 56, 8);
-AT(ethd_ruling, speed, 64, 8);
-
+#define T ethd_contact
+    {TYPE(128),
+     {AT(point, 24), AT(n, 24), AT(d_re, 8), AT(d_fe, 8), AT(d_fr, 8), AT(v, 8), AT(v_f, 8), AT(d_beta, 8),
+      AT(period, 8), AT(age, 8), AT(object, 4), AT(body, 4), AT(facts, 8)}},
+#undef T
+#define T ethd_facts
+    {TYPE(112),
+     {AT(mass, 8), AT(force, 8), AT(applied, 8), AT(friction, 8), AT(viscous, 8), AT(delay, 8), AT(lag, 8),
+      AT(ring_radius, 8), AT(finger_radius, 8), AT(finger_age, 8), AT(finger_a, 8), AT(memory, 8), AT(acceleration, 8),
+      AT(room, 8)}},
+#undef T
+#define T ethd_past
+    {TYPE(48), {AT(offset, 8), AT(d_re, 8), AT(v, 8), AT(age, 8), AT(since, 8), AT(state, 4)}},
+#undef T
+#define T ethd_vec3
+    {TYPE(24), {AT(x, 8), AT(y, 8), AT(z, 8)}},
+#undef T
+#define T ethd_vec
+    {TYPE(16), {AT(x, 8), AT(y, 8)}},
+#undef T
+#define T ethd_tracking_in
+    {TYPE(88), {AT(eps_q, 16), AT(eps_q_dot, 16), AT(eps_x, 16), AT(eps_v, 16), AT(period, 8), AT(finger_v, 16)}},
+#undef T
+#define T ethd_ruling
+    {TYPE(72),
+     {AT(beta, 8), AT(share, 8), AT(offset, 8), AT(damping, 8), AT(feed, 8), AT(argument, 8), AT(state, 4), AT(lead, 8),
+      AT(speed, 8)}},
+#undef T
 /* May grow at their ends: nothing here moves, and a plugin of today stays long enough. */
-AT(ethd_law, size, 0, 4);
-AT(ethd_law, abi, 4, 4);
-AT(ethd_law, kind, 8, 4);
-AT(ethd_law, state_size, 12, 4);
-AT(ethd_law, id, 16, 8);
-AT(ethd_law, brief, 24, 8);
-AT(ethd_law, params, 32, 8);
-AT(ethd_law, param_count, 40, 4);
-AT(ethd_law, check, 48, 8);
-AT(ethd_law, reset, 56, 8);
-SIZE(ethd_law, 64, 8);
-AT(ethd_tracking_law, step, 64, 8);
-AT(ethd_tracking_law, gains, 72, 8);
-AT(ethd_tracking_law, force, 80, 8);
-AT(ethd_tracking_law, velocity, 88, 8);
-AT(ethd_contact_law, step, 64, 8);
-AT(ethd_contact_law, gains, 72, 8);
-AT(ethd_transition_law, step, 64, 8);
-AT(ethd_transition_law, range, 72, 8);
-AT(ethd_transition_law, adopt, 80, 8);
-AT(ethd_transition_law, gains, 88, 8);
-_Static_assert(ETHD_TRACKING_LAW_MIN == 72 && ETHD_CONTACT_LAW_MIN == 72 && ETHD_TRANSITION_LAW_MIN == 72, "least");
-
-AT(ethd_plugin_entry, size, 0, 4);
-AT(ethd_plugin_entry, abi, 4, 4);
-AT(ethd_plugin_entry, id, 8, 8);
-AT(ethd_plugin_entry, version, 16, 8);
-AT(ethd_plugin_entry, laws, 24, 8);
-AT(ethd_plugin_entry, law_count, 32, 4);
-_Static_assert(ETHD_PLUGIN_MIN == 36, "least");
-
+#define T ethd_law
+    {TYPE(64),
+     {AT(size, 4), AT(abi, 4), AT(kind, 4), AT(state_size, 4), AT(id, 8), AT(brief, 8), AT(params, 8),
+      AT(param_count, 4), AT(check, 8), AT(reset, 8)}},
+#undef T
+#define T ethd_tracking_law
+    {TYPE(0), {AT(law, 64), AT(step, 8), AT(gains, 8), AT(force, 8), AT(velocity, 8)}},
+#undef T
+#define T ethd_contact_law
+    {TYPE(0), {AT(law, 64), AT(step, 8), AT(gains, 8)}},
+#undef T
+#define T ethd_transition_law
+    {TYPE(0), {AT(law, 64), AT(step, 8), AT(range, 8), AT(adopt, 8), AT(gains, 8)}},
+#undef T
+#define T ethd_plugin_entry
+    {TYPE(0), {AT(size, 4), AT(abi, 4), AT(id, 8), AT(version, 8), AT(laws, 8), AT(law_count, 4)}},
+#undef T
 /* A driver's table may grow at its end; so may the struct that it is opened with. */
-AT(ethd_driver, size, 0, 4);
-AT(ethd_driver, abi, 4, 4);
-AT(ethd_driver, id, 8, 8);
-AT(ethd_driver, brief, 16, 8);
-AT(ethd_driver, params, 24, 8);
-AT(ethd_driver, param_count, 32, 4);
-AT(ethd_driver, keys, 40, 8);
-AT(ethd_driver, open, 48, 8);
-AT(ethd_driver, start, 56, 8);
-AT(ethd_driver, read, 64, 8);
-AT(ethd_driver, write, 72, 8);
-AT(ethd_driver, units, 80, 8);
-AT(ethd_driver, service, 88, 8);
-AT(ethd_driver, safe, 96, 8);
-AT(ethd_driver, stop, 104, 8);
-AT(ethd_driver, close, 112, 8);
-AT(ethd_driver, limits, 120, 8);
-AT(ethd_driver, figures, 128, 8);
-AT(ethd_driver, remark, 136, 8);
-AT(ethd_driver, clear, 144, 8);
-AT(ethd_driver, home, 152, 8);
-AT(ethd_driver, why, 160, 8);
-AT(ethd_driver, dynamics, 168, 8);
-AT(ethd_driver, prepare, 176, 8);
-AT(ethd_driver, joints, 184, 8);
-AT(ethd_driver, read_space, 192, 8);
-AT(ethd_driver, write_space, 200, 8);
-AT(ethd_driver, able, 208, 8);
-AT(ethd_driver, safe_is, 216, 4);
-_Static_assert(ETHD_DRIVER_MIN == 128, "least");
-
-AT(ethd_device_def, setup, 0, 8);
-AT(ethd_device_def, settings, 8, 8);
-AT(ethd_device_def, setting_count, 16, 4);
-AT(ethd_device_def, folder, 24, 8);
-AT(ethd_device_def, file, 32, 8);
-AT(ethd_device_def, is_virtual, 40, 4);
-AT(ethd_device_def, space, 48, 8);
-
+#define T ethd_driver
+    {TYPE(0), {AT(size, 4),    AT(abi, 4),        AT(id, 8),          AT(brief, 8), AT(params, 8),   AT(param_count, 4),
+               AT(keys, 8),    AT(open, 8),       AT(start, 8),       AT(read, 8),  AT(write, 8),    AT(units, 8),
+               AT(service, 8), AT(safe, 8),       AT(stop, 8),        AT(close, 8), AT(limits, 8),   AT(figures, 8),
+               AT(remark, 8),  AT(clear, 8),      AT(home, 8),        AT(why, 8),   AT(dynamics, 8), AT(prepare, 8),
+               AT(joints, 8),  AT(read_space, 8), AT(write_space, 8), AT(able, 8),  AT(safe_is, 4)}},
+#undef T
+#define T ethd_device_def
+    {TYPE(0),
+     {AT(setup, 8), AT(settings, 8), AT(setting_count, 4), AT(folder, 8), AT(file, 8), AT(is_virtual, 4),
+      AT(space, 8)}},
+#undef T
 /* A driver reads arrays of ethd_setting and writes arrays of ethd_figure. */
-SIZE(ethd_setting, 24, 8);
-AT(ethd_setting, key, 0, 8);
-AT(ethd_setting, value, 8, 8);
-AT(ethd_setting, line, 16, 4);
-SIZE(ethd_figure, 24, 8);
-AT(ethd_figure, name, 0, 8);
-AT(ethd_figure, unit, 8, 8);
-AT(ethd_figure, value, 16, 8);
-
+#define T ethd_setting
+    {TYPE(24), {AT(key, 8), AT(value, 8), AT(line, 4)}},
+#undef T
+#define T ethd_figure
+    {TYPE(24), {AT(name, 8), AT(unit, 8), AT(value, 8)}},
+#undef T
 /* A driver fills these or returns them: their sizes are in ETHD_DRIVER_ABI. */
-SIZE(ethd_sense, 512, 8);
-AT(ethd_sense, time_ns, 0, 8);
-AT(ethd_sense, have, 8, 8);
-AT(ethd_sense, missed, 16, 8);
-AT(ethd_sense, step_ns, 24, 8);
-AT(ethd_sense, faults, 32, 8);
-AT(ethd_sense, grave, 40, 8);
-AT(ethd_sense, q, 48, 16);
-AT(ethd_sense, dq, 64, 16);
-AT(ethd_sense, finger, 80, 16);
-AT(ethd_sense, finger_v, 96, 16);
-AT(ethd_sense, sample_ns, 112, 8);
-AT(ethd_sense, centre, 120, 16);
-AT(ethd_sense, ring, 136, 16);
-AT(ethd_sense, rays, 152, 128);
-AT(ethd_sense, bodies, 280, 192);
-AT(ethd_sense, finger_noise, 472, 8);
-AT(ethd_sense, commanded, 480, 16);
-AT(ethd_sense, age, 496, 16);
-
-SIZE(ethd_space_sense, 312, 8);
-AT(ethd_space_sense, time_ns, 0, 8);
-AT(ethd_space_sense, have, 8, 8);
-AT(ethd_space_sense, missed, 16, 8);
-AT(ethd_space_sense, step_ns, 24, 8);
-AT(ethd_space_sense, faults, 32, 8);
-AT(ethd_space_sense, grave, 40, 8);
-AT(ethd_space_sense, x, 48, 24);
-AT(ethd_space_sense, v, 72, 24);
-AT(ethd_space_sense, normal, 96, 24);
-AT(ethd_space_sense, finger, 120, 24);
-AT(ethd_space_sense, finger_v, 144, 24);
-AT(ethd_space_sense, sample_ns, 168, 8);
-AT(ethd_space_sense, reading, 176, 24);
-AT(ethd_space_sense, reading_v, 200, 24);
-AT(ethd_space_sense, reading_noise, 224, 8);
-AT(ethd_space_sense, reading_v_noise, 232, 8);
-AT(ethd_space_sense, ability, 240, 48);
-AT(ethd_space_sense, commanded, 288, 24);
-
-SIZE(ethd_limits, 192, 8);
-AT(ethd_limits, size, 0, 4);
-AT(ethd_limits, latch, 4, 4);
-AT(ethd_limits, torque, 8, 8);
-AT(ethd_limits, torque_rate, 16, 8);
-AT(ethd_limits, speed, 24, 8);
-AT(ethd_limits, workspace, 32, 32);
-AT(ethd_limits, reach, 64, 16);
-AT(ethd_limits, joints, 80, 32);
-AT(ethd_limits, margin, 112, 8);
-AT(ethd_limits, energy, 120, 8);
-AT(ethd_limits, nominal_torque, 128, 8);
-AT(ethd_limits, heat_time, 136, 8);
-AT(ethd_limits, step_time, 144, 8);
-AT(ethd_limits, gap, 152, 8);
-AT(ethd_limits, finger_age, 160, 8);
-AT(ethd_limits, finger_lost, 168, 8);
-AT(ethd_limits, clean_time, 176, 8);
-AT(ethd_limits, stop_time, 184, 8);
-
-SIZE(ethd_dynamics, 40, 8);
-AT(ethd_dynamics, mass, 0, 16);
-AT(ethd_dynamics, friction, 16, 8);
-AT(ethd_dynamics, viscous, 24, 8);
-AT(ethd_dynamics, delay, 32, 8);
-
-SIZE(ethd_command, 24, 8);
-AT(ethd_command, torque, 0, 16);
-AT(ethd_command, safe, 16, 4);
-
-SIZE(ethd_space_command, 56, 8);
-AT(ethd_space_command, value, 0, 24);
-AT(ethd_space_command, normal, 24, 24);
-AT(ethd_space_command, kind, 48, 4);
-AT(ethd_space_command, safe, 52, 4);
-
-SIZE(ethd_ability, 48, 8);
-AT(ethd_ability, speed, 0, 8);
-AT(ethd_ability, acceleration, 8, 8);
-AT(ethd_ability, delay, 16, 8);
-AT(ethd_ability, mass, 24, 8);
-AT(ethd_ability, force, 32, 8);
-AT(ethd_ability, friction, 40, 8);
-
+#define T ethd_sense
+    {TYPE(512),
+     {AT(time_ns, 8), AT(have, 8), AT(missed, 8), AT(step_ns, 8), AT(faults, 8), AT(grave, 8), AT(q, 16), AT(dq, 16),
+      AT(finger, 16), AT(finger_v, 16), AT(sample_ns, 8), AT(centre, 16), AT(ring, 16), AT(rays, 128), AT(bodies, 192),
+      AT(finger_noise, 8), AT(commanded, 16), AT(age, 16)}},
+#undef T
+#define T ethd_space_sense
+    {TYPE(312),
+     {AT(time_ns, 8), AT(have, 8), AT(missed, 8), AT(step_ns, 8), AT(faults, 8), AT(grave, 8), AT(x, 24), AT(v, 24),
+      AT(normal, 24), AT(finger, 24), AT(finger_v, 24), AT(sample_ns, 8), AT(reading, 24), AT(reading_v, 24),
+      AT(reading_noise, 8), AT(reading_v_noise, 8), AT(ability, 48), AT(commanded, 24)}},
+#undef T
+#define T ethd_limits
+    {TYPE(192),
+     {AT(size, 4), AT(latch, 4), AT(torque, 8), AT(torque_rate, 8), AT(speed, 8), AT(workspace, 32), AT(reach, 16),
+      AT(joints, 32), AT(margin, 8), AT(energy, 8), AT(nominal_torque, 8), AT(heat_time, 8), AT(step_time, 8),
+      AT(gap, 8), AT(finger_age, 8), AT(finger_lost, 8), AT(clean_time, 8), AT(stop_time, 8)}},
+#undef T
+#define T ethd_dynamics
+    {TYPE(40), {AT(mass, 16), AT(friction, 8), AT(viscous, 8), AT(delay, 8)}},
+#undef T
+#define T ethd_command
+    {TYPE(24), {AT(torque, 16), AT(safe, 4)}},
+#undef T
+#define T ethd_space_command
+    {TYPE(56), {AT(value, 24), AT(normal, 24), AT(kind, 4), AT(safe, 4)}},
+#undef T
+#define T ethd_ability
+    {TYPE(48), {AT(speed, 8), AT(acceleration, 8), AT(delay, 8), AT(mass, 8), AT(force, 8), AT(friction, 8)}},
+#undef T
 /* Written by the library for the refusal of what else differs, so its size never changes. */
-SIZE(ethd_error, 96, 8);
+#define T ethd_error
+    {TYPE(96), {AT(status, 4)}},
+#undef T
+};
+
+TEST_LOOP(test_layout, 0, sizeof(void *) == 8 ? sizeof layouts / sizeof *layouts : 0) {
+  const layout *l = &layouts[_i];
+  size_t at = 0;
+  for (const field *f = l->fields; f->name; f++) {
+    const size_t align = f->expected % 8 ? 4 : 8;
+    at = (at + align - 1) / align * align;
+    ck_assert_msg(f->at == at && f->bytes == f->expected, "%s.%s: %zu bytes at %zu, not %zu at %zu", l->type, f->name,
+                  f->bytes, f->at, f->expected, at);
+    at += f->bytes;
+  }
+  ck_assert_msg(l->align == 8 && (l->expected == 0 || l->bytes == l->expected), "%s: %zu bytes", l->type, l->bytes);
+}
+
+#if defined(__LP64__)
+_Static_assert(ETHD_TRACKING_LAW_MIN == 72 && ETHD_CONTACT_LAW_MIN == 72 && ETHD_TRANSITION_LAW_MIN == 72, "least");
+_Static_assert(ETHD_PLUGIN_MIN == 36, "least");
+_Static_assert(ETHD_DRIVER_MIN == 128, "least");
 #endif
 
 _Static_assert(ETHD_ABI == 1 && ETHD_STATE_MAX == 512 && ETHD_PARAMS_MAX == 16, "ABI 1");
