@@ -1,4 +1,5 @@
-/* The plant's motion against closed forms, energy, and itself at other steps. */
+/* The plant's motion against energy, Lagrange's equations, and itself at other steps, for both mechanisms, coupled or not,
+   rigid or compliant. A whole tap against SciPy, with friction, damping, hand and pad: tests/simulator.py. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -62,145 +63,6 @@ static void run(world *w, double duration, double cell) {
   }
 }
 
-/* ---- one joint ---- */
-
-/* m v' = -b v: v = v0 exp(-b t / m), x = m/b (v0 - v). */
-TEST(test_viscous) {
-  ethd_sim_def def = quiet();
-  def.plant.viscous = 3;
-  world w;
-  alone(&def, PI / 2, 0, &w);
-  w.state.v[0] = 0.4 / 0.25;
-  run(&w, 0.1, CELL);
-  double v = 0.4 * exp(-3 * 0.1 / 0.12);
-  ck_assert_double_eq_tol(0.25 * w.state.v[0], v, 1e-12);
-  ck_assert_double_eq_tol(0.25 * (w.state.q[0] - PI / 2), 0.12 / 3 * (0.4 - v), 1e-12);
-  ck_assert(w.state.v[1] == 0 && w.state.q[1] == 0);
-}
-
-/* m v' = -f tanh(v / vs): sinh(v / vs) = sinh(v0 / vs) exp(-f t / (m vs)). */
-TEST(test_friction) {
-  ethd_sim_def def = quiet();
-  def.plant.friction = 0.4;
-  world w;
-  for (int j = 0; j < 2; j++) {
-    alone(&def, PI / 2, 0, &w);
-    w.state.v[j] = -0.15 / 0.25;
-    for (int i = 0; i < 150; i++) {
-      run(&w, 1e-3, CELL);
-      double s = sinh(0.15 / 3e-3) * exp(-0.4 * w.t / (def.plant.mass[j] * 3e-3));
-      ck_assert_double_eq_tol(0.25 * w.state.v[j], -3e-3 * asinh(s), 3e-9);
-    }
-  }
-}
-
-/* A constant torque: th = tau t^2 / (2 I). */
-TEST(test_torque) {
-  ethd_sim_def def = quiet();
-  world w;
-  alone(&def, 1, 0.2, &w);
-  w.body.torque[0] = 0.3;
-  w.body.torque[1] = -0.7;
-  run(&w, 0.05, CELL);
-  ck_assert_double_eq_tol(w.state.q[0], 1 + 0.3 * 0.00125 / (0.12 * 0.0625), 1e-12);
-  ck_assert_double_eq_tol(w.state.q[1], 0.2 - 0.7 * 0.00125 / (0.25 * 0.0625), 1e-12);
-}
-
-/* ---- finger ---- */
-
-/* The ring as good as fixed, the hand's rest where pad and ring just touch: half a period with the hand
-   alone, half with hand and pad, each a sine. */
-TEST(test_two_springs) {
-  ethd_sim_def def = quiet();
-  world w;
-  put(&def, PI / 2, 0, 0.0045, &w);
-  w.body.inertia[0] = w.body.inertia[1] = 1e12;
-  w.body.gap = w.hand.a.x - 0.25; /* to the last digit */
-  double out = sqrt(280 / 0.07), in = sqrt((280 + 27000) / 0.07), v0 = -0.3;
-  w.state.v[2] = v0;
-  w.state.touch = ETHD__APART;
-  for (int i = 1; i <= 2000; i++) {
-    run(&w, 2 * CELL, 2 * CELL);
-    double period = PI / out + PI / in, t = fmod(w.t, period);
-    double x = t < PI / out ? v0 / out * sin(out * t) : -v0 / in * sin(in * (t - PI / out));
-    ck_assert_double_eq_tol(w.state.q[2] - w.hand.a.x, x, 3e-9);
-    ck_assert(w.state.q[3] == 0.25);
-  }
-}
-
-/* The finger pressed on a ring as good as fixed by a hand of minimum jerk, both at rest at first. From its path h it is
-   y away: m y'' = -k y - K (h + y - r) is solved by y = -K / (k + K) (h - r - h''/w^2 + h''''/w^4) and a sine. */
-TEST(test_hand_of_minimum_jerk) {
-  enum { MS = 80 };
-  const double length = 0.02, whole = 1e-3 * MS, stiffness = 280 + 27000, square = stiffness / 0.07;
-  const ethd_path path = {.from = {0.258, 0.25},
-                          .to_x = 0.258 + length,
-                          .speed = 1.875 * length / whole,
-                          .profile = ETHD_PROFILE_MINIMUM_JERK};
-  ethd_sim_def def = quiet();
-  world w;
-  put(&def, PI / 2, 0, 0.0045, &w);
-  w.body.inertia[0] = w.body.inertia[1] = 1e12;
-  ethd__path_piece(&path, 0, &w.hand);
-  double edge = 0.25 + w.body.gap, rest = (280 * path.from.x + 27000 * edge) / stiffness;
-  w.state.q[2] = rest;
-  w.state.touch = ETHD__PRESSING;
-  for (int i = 1; i < MS; i++) {
-    run(&w, 1e-3, 1e-3);
-    double s = w.t / whole, h = path.from.x + length * s * s * s * (10 + s * (6 * s - 15));
-    double second = length / (whole * whole) * s * (60 + s * (120 * s - 180));
-    double third = 60 * length / (whole * whole * whole), fourth = (720 * s - 360) * length / pow(whole, 4);
-    double fifth = 720 * length / pow(whole, 5), first = -third / square + fifth / (square * square);
-    double y = h - edge - second / square + fourth / (square * square), root = sqrt(square);
-    y += 360 * length / pow(whole, 4) / (square * square) * cos(root * w.t) - first / root * sin(root * w.t);
-    double x = h - 27000 / stiffness * y;
-    ck_assert_double_eq_tol(w.state.q[2], x, 1e-14);
-    ck_assert(w.state.q[3] == 0.25 && w.state.touch == ETHD__PRESSING);
-  }
-}
-
-/* A blow on the finger dies away in the hand: m x'' + b x' + k x = 0. */
-TEST(test_hand) {
-  ethd_sim_def def = quiet();
-  def.plant.hand_damping = 4.27;
-  world w;
-  put(&def, PI / 2, 0, 0, &w);
-  w.state.v[3] = 0.2;
-  run(&w, 0.05, CELL);
-  double d = 4.27 / (2 * 0.07), f = sqrt(280 / 0.07 - d * d);
-  ck_assert_double_eq_tol(w.state.q[3] - 0.25, 0.2 / f * exp(-d * 0.05) * sin(f * 0.05), 1e-11);
-}
-
-/* Pressed together and let go: the force follows K p (1 + c p_dot), never pulls, and stops at p = 0. */
-TEST(test_pad) {
-  ethd_sim_def def = quiet();
-  def.plant.pad_damping = 1.5;
-  world w;
-  put(&def, PI / 2, 0, 0.0050, &w);
-  double p, force;
-  int touched = 0, left = 0;
-  for (int i = 0; i < 400; i++) {
-    ethd_vec x, v;
-    ethd__body_ring(&w.body, &w.state, &x, &v);
-    ethd_vec r = {w.state.q[2] - x.x, w.state.q[3] - x.y}, s = {w.state.v[2] - v.x, w.state.v[3] - v.y};
-    double distance = hypot(r.x, r.y), depth = distance - 0.0045, rate = (r.x * s.x + r.y * s.y) / distance;
-    ethd__body_pad(&w.body, &w.state, &p, &force);
-    ck_assert_double_eq_tol(p, depth, 1e-15);
-    ck_assert_double_eq_tol(force, depth > 1e-15 ? fmax(0, 27000 * depth * (1 + 1.5 * rate)) : 0, 1e-9);
-    touched += force > 0;
-    left += depth > 0 && rate < -1 / 1.5;
-    run(&w, CELL, CELL);
-    if (i == 200) { /* torn out */
-      w.state.q[2] = x.x + 0.0048;
-      w.state.q[3] = x.y;
-      w.state.v[2] = v.x - 1.2;
-      w.state.touch = ethd__body_touch(&w.body, &w.state);
-    }
-  }
-  ck_assert_int_gt(touched, 50);
-  ck_assert_int_gt(left, 1);
-}
-
 /* ---- both links ---- */
 
 /* Nothing is lost: coupled links, either mechanism, rigid or not, the finger knocking about in the ring. */
@@ -251,24 +113,6 @@ TEST_LOOP(test_free_arm, 0, 2) {
   printf("%.3f J, within %.1e J, turned %.1f\n", before, most, w.state.q[0] - begin);
   ck_assert_double_ge(before, 0.1);
   ck_assert_double_le(most, 1e-10);
-}
-
-/* Work of a torque is the energy it leaves: tau dq of the joints. */
-TEST_LOOP(test_work, 0, 2) {
-  ethd_sim_def def = quiet();
-  def.arm.mechanism = (ethd_mechanism)(_i & 1);
-  def.plant.coupling = 0.006;
-  world w;
-  alone(&def, 1.3, -0.6, &w);
-  double q[2], begin[2];
-  ethd__body_joints(&w.body, w.state.q, begin);
-  w.body.torque[0] = 0.11;
-  w.body.torque[1] = -0.07;
-  run(&w, 0.03, CELL);
-  ethd__body_joints(&w.body, w.state.q, q);
-  double work = 0.11 * (q[0] - begin[0]) - 0.07 * (q[1] - begin[1]);
-  ck_assert_double_gt(work, 1e-4);
-  ck_assert_double_eq_tol(ethd__body_energy(&w.body, &w.state, w.hand.a), work, 1e-11);
 }
 
 /* Lagrange's equations from the energy alone, by differences: d/dt dT/dth' - dT/dth = generalised torque. */
@@ -338,31 +182,7 @@ TEST(test_mechanisms) {
 
 /* ---- transmission ---- */
 
-/* Between free ends, motor against link: f = sqrt(k / mu) / 2 pi, 88.15 Hz with plant p's numbers. */
-TEST(test_transmission) {
-  ethd_sim_def def = quiet();
-  def.plant.mass[0] = def.plant.mass[1] = 0.09475;
-  def.plant.motor_mass = 0.01322;
-  def.plant.stiffness = 3489.6;
-  world w;
-  double mu = 0.01322 * (0.09475 - 0.01322) / 0.09475, omega = sqrt(3489.6 / mu);
-  ck_assert_double_eq_tol(omega / (2 * PI), 88.1, 0.1);
-  for (int j = 0; j < 2; j++) {
-    put(&def, PI / 2, 0, 0, &w);
-    double begin = w.state.q[j];
-    w.state.v[4 + j] = 0.1 / 0.01322;
-    w.state.v[j] = -0.1 / (0.09475 - 0.01322);
-    for (int i = 0; i < 100; i++) {
-      run(&w, 1e-3, CELL / 5);
-      double twist = 0.1 / mu / omega * sin(omega * w.t);
-      ck_assert_double_eq_tol(w.state.q[4 + j] - w.state.q[j], twist, 1e-7);
-      double centre = 0.01322 * w.state.q[4 + j] + (0.09475 - 0.01322) * w.state.q[j];
-      ck_assert_double_eq_tol(centre / 0.09475, begin, 1e-12);
-    }
-  }
-}
-
-/* A stiff one is as good as none. */
+/* A stiff transmission is as good as none. */
 TEST(test_stiff_transmission) {
   ethd_sim_def def = quiet();
   def.plant.viscous = 1;
