@@ -16,7 +16,7 @@ for path in include/ethd/*.h; do
   [ -f "$path" ] || { echo "include/ethd holds no header"; exit 1; }
   header=${path##*/}
   count=$((count + 1))
-  for cc in $CC clang; do
+  for cc in "$CC" clang; do
     if command -v ${cc%% *} >/dev/null; then alone "$header" $cc -std=c11 -Wstrict-prototypes -x c; fi
   done
   alone "$header" $CXX -std=c++17 -x c++
