@@ -377,11 +377,11 @@ ifeq ($(SAN),)
 	ETHD_STRESS=1 $(BUILD)-san-address-undefined/tests/test_stress_space
 endif
 
-# What the tests reach: every branch of lib, 90 % of drivers, the conditions that decide; then how many small bugs they see.
+# What the tests reach: every branch of lib, 90 % of drivers, the conditions that decide; then which small bugs in FILE they see.
 coverage:
 	@BUILD='$(BUILD)' CC='$(CC)' MAKE='$(MAKE)' sh tests/coverage.sh $(or $(WHAT),lib drivers mcdc)
 mutation:
-	@BUILD='$(BUILD)' MAKE='$(MAKE)' sh tests/mutation.sh $(or $(COUNT),2000)
+	@BUILD='$(BUILD)' MAKE='$(MAKE)' sh tests/mutation.sh $(FILE) $(TESTS)
 # 1e9 inputs over all readers, and a simulated day: hours, again and again until they are through.
 volume-all: $(B)/tests/volume $(B)/tests/day
 	@BUILD='$(abspath $(B))' sh tests/volume.sh 1e9
