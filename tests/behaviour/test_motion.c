@@ -1,5 +1,5 @@
-/* Every recorded movement against every law, closed loop: properties of the traces. The folder is
-   ETHD_MOTION_DIR, tests/motion without. */
+/* Every recorded movement under every law, closed loop: the simulated hand follows it, touches where it should, and nothing
+   is at fault. The laws' numbers: tests/replay.py. The folder is ETHD_MOTION_DIR, tests/motion without. */
 #include <glob.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "properties.h"
 #include "tap/study.h"
 #include "unit/suite.h"
 
@@ -120,7 +119,6 @@ static void assert_touchdown(const recording *r, const ethd__speed *speed, const
 
 static void run_file(ethd__study *study, const ethd_plant *plant, const char *path,
                      size_t reasons[ETHD_TAP_REASON_COUNT]) {
-  const gains n = {7.32e-3, 10.546e-3, 5.357 * 0.25};
   char message[ETHD_MESSAGE_MAX], where[512];
   recording r = read_recording(path);
   ck_assert_msg(!ethd__movement_load(path, &ethd__movement_si, &study->movement, message), "%s", message);
@@ -137,12 +135,8 @@ static void run_file(ethd__study *study, const ethd_plant *plant, const char *pa
       reasons[result.metrics.reason]++;
       if (!l) assert_touchdown(&r, &study->speeds[s], where);
       assert_path(&r, &stage.rows, &study->speeds[s].touchdown, where);
-      assert_finite(&stage.rows, where);
-      assert_torque_within(&stage.rows, &n, where);
-      assert_forces(&stage.rows, (kind)l, where);
-      assert_beta(&stage.rows, (kind)l, &n, where);
-      assert_beta_jumps(&stage.rows, (kind)l, &n, where);
-      assert_energy(&stage.rows, where);
+      for (size_t k = 0; k < stage.rows.count; k++)
+        if (stage.rows.trace[k].fault) ck_abort_msg("%s: tick %zu: %d", where, k, (int)stage.rows.trace[k].fault);
     }
     ethd__stage_close(&stage);
   }
