@@ -112,12 +112,6 @@ TEST(test_filter_forgets_acceleration) {
 
 /* ---- scenes ---- */
 
-static ethd_scene *scene(const char *text) {
-  ethd_scene *out;
-  ck_assert_msg(ethd_scene_parse(text, strlen(text), &out, &error) == ETHD_OK, "line %d: %s", error.line, error.name);
-  return out;
-}
-
 static ethd_status parse(const char *text) {
   ethd_scene *out;
   ethd_status status = ethd_scene_parse(text, strlen(text), &out, &error);
@@ -133,38 +127,6 @@ TEST(test_names_of_materials) {
     ck_assert_msg(parse(text) < 0, "%s is taken", refused[i]);
   }
   ck_assert_int_eq(parse("material aZ0_-.9 k_e=1\ncircle 0 0 1\n"), ETHD_OK);
-}
-
-/* From whichever corner a polygon is told and in either sense, inside is inside; three corners in a line at its
-   left. */
-TEST(test_polygon_from_every_corner) {
-  static const double p[][2] = {{0, 0}, {0, -1}, {3, -2}, {2, 0}, {3, 2}, {0, 1}};
-  enum { N = sizeof p / sizeof *p };
-  for (int first = 0; first < N; first++)
-    for (int step = 1; step < N; step += N - 2) {
-      char text[256] = "polygon", number[32];
-      for (int i = 0; i < N; i++) {
-        const double *q = p[(first + i * step) % N];
-        snprintf(number, sizeof number, " %g %g", q[0], q[1]);
-        strcat(text, number);
-      }
-      ethd_scene *s = scene(text);
-      ethd_touch touch;
-      ck_assert_uint_ge(ethd_scene_touches(s, (ethd_vec){1, 0.1}, 5, &touch, 1), 1);
-      ck_assert_msg(touch.distance < 0, "%s: %g", text, touch.distance);
-      ck_assert_uint_ge(ethd_scene_touches(s, (ethd_vec){-1, 0.1}, 5, &touch, 1), 1);
-      ck_assert_msg(fabs(touch.distance - 1) < 1e-12, "%s: %g", text, touch.distance);
-      ethd_scene_destroy(s);
-    }
-}
-
-/* At the very centre of a circle any way out is as good, but it is one, of length 1. */
-TEST(test_centre_of_a_circle) {
-  ethd_scene *s = scene("circle 1 2 3");
-  ethd_touch touch;
-  ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){1, 2}, 5, &touch, 1), 1);
-  ck_assert(touch.distance == -3 && ethd_vec_norm(touch.n) == 1);
-  ethd_scene_destroy(s);
 }
 
 /* ---- the ring's decoder ---- */

@@ -220,14 +220,3 @@ TEST(test_cap_of_time_is_exact) {
       ck_assert_int_eq(ticks, n);
     }
 }
-
-/* The tables say what configuration files may rely on. */
-TEST(test_defaults) {
-  const ethd_setup s = ethd_setup_default();
-  const double transition[] = {100, 0.020, 0.1, 0.006, 0.050}, tracking[] = {40, 1, 0}, contact[] = {2500, 45};
-  ck_assert_mem_eq(s.transition_p, transition, sizeof transition);
-  ck_assert_mem_eq(s.tracking_p, tracking, sizeof tracking);
-  ck_assert_mem_eq(s.contact_p, contact, sizeof contact);
-  ck_assert(s.swap_time == 0.020 && s.v_hysteresis == 0 && s.period == 0.001 && s.ring_radius == 0.012);
-  ck_assert(s.finger_radius == 0.0075 && s.finger_radius_max == 0.0095 && s.arm.mechanism == ETHD_ARM_PARALLEL);
-}

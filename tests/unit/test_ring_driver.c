@@ -209,18 +209,15 @@ static void begin(run *r) {
   r->now_ns = VIRTUAL;
 }
 
-/* What may become of frame i; false: it is lost, or what stands in `noise` comes in its place. */
+/* What may become of frame i; false: it is lost. */
 typedef bool (*mangle)(ethd__ring_frame *frame, uint32_t i);
-static const uint8_t *noise;
 
 /* A tick: the frames that are due are sent, or not; then service and read. */
 static ethd_status tick(run *r, mangle how) {
   r->now_ns += TICK;
   for (; scene_arrival(&r->board.scene, r->next) <= r->now_ns; r->next++) {
     ethd__ring_frame f = scene_frame(&r->board.scene, r->next);
-    noise = NULL;
     if (r->board.master >= 0 && (!how || how(&f, r->next))) send_frame(&r->board, &f);
-    if (r->board.master >= 0 && noise) send_bytes(&r->board, noise);
   }
   ethd_status status = driver->service(r->device, 0, r->now_ns);
   r->sense = (ethd_sense){.time_ns = r->now_ns};
@@ -284,80 +281,9 @@ TEST(test_younger_than_the_tick) {
   end(&r);
 }
 
-/* ---- rows of the fault table that behaviour/fault_rows.c lacks: bound, in ticks, at 20 phases ---- */
+/* ---- rows of the fault table: behaviour/fault_rows.c, test_ring_board.c, and one here ---- */
 
 static uint32_t onset;
-
-static bool lose_all(ethd__ring_frame *f, uint32_t i) {
-  (void)f;
-  return i < onset;
-}
-/* A line on which something else speaks: bytes that never end a piece, and such that do. */
-static bool noise_without_end(ethd__ring_frame *f, uint32_t i) {
-  static uint8_t bytes[ETHD__FRAME_WIRE];
-  memset(bytes, 0x55, sizeof bytes);
-  (void)f;
-  noise = i < onset ? NULL : bytes;
-  return i < onset;
-}
-static bool noise_in_pieces(ethd__ring_frame *f, uint32_t i) {
-  static uint8_t bytes[ETHD__FRAME_WIRE];
-  memset(bytes, 0x55, sizeof bytes);
-  bytes[20] = 0;
-  (void)f;
-  noise = i < onset ? NULL : bytes;
-  return i < onset;
-}
-static bool reset_board(ethd__ring_frame *f, uint32_t i) {
-  if (i < onset) return true;
-  f->seq = (uint16_t)(i - onset);
-  f->t_us -= onset * 3333;
-  if (i == onset) f->flags |= ETHD__FRAME_FIRST, f->t_us = 20;
-  return true;
-}
-static bool implausible(ethd__ring_frame *f, uint32_t i) {
-  for (int k = 0; k < ETHD_RAYS && i == onset; k++) f->counts[k] = (uint16_t)(3000 + 9000 * (k % 2) + 77 * k);
-  return true;
-}
-
-/* Ticks from the tick at which frame `onset` arrives, or would, until the row's bit. */
-static int noticed(mangle how, ethd_fault row) {
-  run r;
-  int ticks = -1;
-  begin(&r);
-  int64_t bit = ETHD_FAULT_BIT(row), due = scene_arrival(&r.board.scene, onset);
-  while (r.now_ns < due + 60 * TICK && ticks < 0) {
-    tick(&r, how);
-    if (r.now_ns < due) ck_assert_int_eq(r.sense.faults | r.sense.grave, 0);
-    if (r.sense.faults & bit) ticks = (int)((r.now_ns - due) / TICK);
-  }
-  end(&r);
-  return ticks;
-}
-
-static const struct {
-  const char *what;
-  mangle how;
-  ethd_fault row;
-  int most; /* ticks after the tick of the arrival */
-} rows[] = {
-    {"all frames lost", lose_all, ETHD_FAULT_FRAME_LOST, 3},
-    {"noise in pieces", noise_in_pieces, ETHD_FAULT_FRAME_LOST, 0},
-    {"noise without an end", noise_without_end, ETHD_FAULT_FRAME_LOST, 0},
-    {"a frame implausible", implausible, ETHD_FAULT_FRAME_LOST, 0},
-    {"the board was reset", reset_board, ETHD_FAULT_BOARD_CLOCK, 0},
-};
-
-TEST_LOOP(test_rows, 0, (int)(sizeof rows / sizeof *rows)) {
-  int worst = -1;
-  for (uint32_t phase = 0; phase < 20; phase++) {
-    onset = 60 + 7 * phase;
-    int ticks = noticed(rows[_i].how, rows[_i].row);
-    ck_assert_msg(ticks >= 0 && ticks <= rows[_i].most, "%s, phase %u: %d ticks", rows[_i].what, phase, ticks);
-    if (ticks > worst) worst = ticks;
-  }
-  printf("%-26s row %d seen at most %d ticks after it\n", rows[_i].what, (int)rows[_i].row, worst);
-}
 
 /* All sensors count 2000 more after a while: a row, and a sentence. */
 static bool all_brighter(ethd__ring_frame *f, uint32_t i) {

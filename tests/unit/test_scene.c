@@ -70,40 +70,6 @@ TEST_LOOP(test_each_shape, 0, ETHD_SHAPE_COUNT) {
   ck_assert(worst > 0);
 }
 
-TEST(test_mixed) {
-  enum { OBJECTS = 40, SCENES = 50 };
-  scene_seed(200);
-  int ties = 0;
-  for (int s = 0; s < SCENES; s++) {
-    object o[OBJECTS];
-    for (int i = 0; i < OBJECTS; i++) o[i] = scene_random((ethd_shape)(1 + scene_draw() % (ETHD_SHAPE_COUNT - 1)));
-    if (s % 2) o[7] = scene_random(ETHD_SHAPE_HALFPLANE), o[7].p[2] = 0.8;
-    ethd_scene *scene = scene_build(o, OBJECTS);
-    for (int i = 0; i < QUERIES / SCENES / 4; i++) {
-      ethd_vec x = {scene_uniform(-1, 1), scene_uniform(-1, 1)};
-      ethd_nearest q;
-      real least = INFINITY, second = INFINITY;
-      int which = -1;
-      for (int k = 0; k < OBJECTS; k++) {
-        real d = scene_expected(&o[k], x.x, x.y);
-        if (d < least)
-          second = least, least = d, which = k;
-        else if (d < second)
-          second = d;
-      }
-      ethd_scene_query(scene, x, &q);
-      ck_assert_msg(fabsl(q.distance - least) <= SCENE_TIGHT, "%s: %Lg at %.17g %.17g", ethd_shape_name(o[which].shape),
-                    fabsl(q.distance - least), x.x, x.y);
-      if (second - least > 2 * SCENE_TIGHT)
-        ck_assert_int_eq(q.object, which);
-      else
-        ties++;
-    }
-    ethd_scene_destroy(scene);
-  }
-  ck_assert_int_lt(ties, 100);
-}
-
 /* ---- special places ---- */
 
 static ethd_nearest at(const ethd_scene *scene, double x, double y) {

@@ -1,4 +1,4 @@
-/* Contacts against samples of the boundary. */
+/* Contacts against samples of the boundary. Their order, and which one is followed: test_scene_tree. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -183,58 +183,4 @@ TEST(test_shared_vertices_count_once) {
   ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){1.5, 0}, 1, t, 8), 1);
   ck_assert(t[0].feature == 0 && t[0].side == 0);
   ethd_scene_destroy(s);
-}
-
-/* All, in order; the deepest when there is no room for all. */
-TEST(test_order_and_overflow) {
-  enum { OBJECTS = 30 };
-  scene_seed(700);
-  for (int s = 0; s < 300; s++) {
-    object o[OBJECTS];
-    for (int i = 0; i < OBJECTS; i++) o[i] = scene_random((ethd_shape)(scene_draw() % ETHD_SHAPE_COUNT));
-    if (s % 3 == 0) o[17] = o[4]; /* equal depths */
-    ethd_scene *scene = scene_build(o, OBJECTS);
-    ethd_vec x = {scene_uniform(-0.7, 0.7), scene_uniform(-0.7, 0.7)};
-    static ethd_touch all[500], few[500];
-    size_t n = ethd_scene_touches(scene, x, 0.4, all, 500), sum = 0;
-    ck_assert_uint_le(n, 500);
-    for (int i = 0; i < OBJECTS; i++) {
-      ethd_scene *alone = scene_build(&o[i], 1);
-      sum += ethd_scene_touches(alone, x, 0.4, few, 500);
-      ethd_scene_destroy(alone);
-    }
-    ck_assert_uint_eq(sum, n);
-    for (size_t i = 1; i < n; i++) {
-      const ethd_touch *a = &all[i - 1], *b = &all[i];
-      int before = a->distance != b->distance ? a->distance < b->distance
-                   : a->object != b->object   ? a->object < b->object
-                                              : a->feature < b->feature;
-      ck_assert(before);
-    }
-    for (size_t room = 0; room <= n; room++) {
-      ck_assert_uint_eq(ethd_scene_touches(scene, x, 0.4, few, room), n);
-      for (size_t i = 0; i < room; i++) ck_assert(few[i].object == all[i].object && few[i].feature == all[i].feature);
-    }
-    ethd_scene_destroy(scene);
-  }
-}
-
-TEST(test_follow) {
-  enum { ROOM = 100 };
-  scene_seed(800);
-  for (int s = 0; s < 3000; s++) {
-    object o[2] = {scene_random(ETHD_SHAPE_CIRCLE), scene_random((ethd_shape)(scene_draw() % ETHD_SHAPE_COUNT))};
-    ethd_scene *scene = scene_build(o, 2), *alone = scene_build(&o[1], 1);
-    ethd_vec x = {scene_uniform(-1, 1), scene_uniform(-1, 1)}, from = {scene_uniform(-1, 1), scene_uniform(-1, 1)};
-    ethd_touch all[ROOM], one_of;
-    size_t n = ethd_scene_touches(alone, x, 9, all, ROOM), best = 0;
-    for (size_t i = 1; i < n; i++)
-      if (apart(all[i].point, from) < apart(all[best].point, from)) best = i;
-    ethd_scene_follow(scene, 1, x, from, &one_of);
-    ck_assert_int_eq(one_of.object, 1);
-    ck_assert_int_eq(one_of.feature, all[best].feature);
-    ck_assert(one_of.distance == all[best].distance && one_of.side == all[best].side);
-    ethd_scene_destroy(alone);
-    ethd_scene_destroy(scene);
-  }
 }

@@ -29,60 +29,6 @@ static motion tap(int tick) {
 static const ethd_transition_law *const strategies[] = {&ethd_transition_abrupt, &ethd_transition_smooth,
                                                         &ethd_transition_offset};
 
-/* tau = beta tau_t + J^T (F_e + F_d) with the default gains, from what a tick reports. */
-static void torque_of(const ethd_trace *t, double tau[2]) {
-  const double *q = t->sense.q, f[2] = {t->fe[0] + t->fd[0], t->fe[1] + t->fd[1]};
-  for (int i = 0; i < 2; i++)
-    tau[i] = t->beta * (40 * t->eps_q[i] + t->eps_q_dot[i]) + 0.25 * (cos(q[i]) * f[1] - sin(q[i]) * f[0]);
-}
-
-static double bound_of(double delta) { return fabs(delta) * (1 + 1e-9) + 1e-13; }
-
-/* _i: from which to which. At every tick of the tap. */
-TEST_LOOP(test_every_tick_of_a_tap, 0, 9) {
-  const ethd_transition_law *from = strategies[_i % 3], *to = strategies[_i / 3];
-  rig r, stays;
-  int moved = 0;
-  rig_begin(&stays, RIG_WALL, from);
-  rig_open(&r, RIG_WALL);
-  for (int at = 0; at < TAP; at++) {
-    motion m = tap(at);
-    ethd_setup_transition(&r.setup, from);
-    rig_start(&r);
-    for (int tick = 0; tick < at; tick++) {
-      motion before = tap(tick);
-      rig_step(&r, &before);
-    }
-    ethd_setup_transition(&r.setup, to);
-    rig_post(&r);
-    stays.sense.time_ns = r.sense.time_ns;
-    rig_step(&stays, &m);
-    rig_step(&r, &m);
-    ck_assert_mem_eq(r.trace.tau, stays.trace.tau, sizeof r.trace.tau);
-    double new[2], delta[2], fade[2], last[2];
-    torque_of(&r.trace, new);
-    for (int i = 0; i < 2; i++) last[i] = delta[i] = r.trace.tau[i] - new[i];
-    moved += fabs(delta[0]) > 0.1;
-    for (int k = 1; k <= 22 && at + k < TAP; k++) {
-      m = tap(at + k);
-      rig_step(&r, &m);
-      torque_of(&r.trace, new);
-      for (int i = 0; i < 2; i++) {
-        fade[i] = r.trace.tau[i] - new[i];
-        ck_assert_double_le(fabs(fade[i] - last[i]), bound_of(delta[i] / 20));
-        ck_assert_double_eq_tol(fade[i], k < 20 ? delta[i] * (1 - k / 20.0) : 0, 1e-12);
-        last[i] = fade[i];
-      }
-    }
-    ethd_control_destroy(r.control);
-    r.control = NULL;
-  }
-  if (from != to) ck_assert_int_gt(moved, 20); /* there was something to bridge */
-  if (from == to) ck_assert_int_eq(moved, 0);
-  rig_close(&r);
-  rig_close(&stays);
-}
-
 /* ---- ten thousand random ones ---- */
 
 static const char *const scenes[] = {
