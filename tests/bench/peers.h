@@ -52,6 +52,15 @@ typedef struct ethd__peer_scene {
   void (*destroy)(void *self);
 } ethd__peer_scene;
 
+/* `peer_mesh`: the surfaces within `range`, m, of x in a mesh that a file holds. */
+struct ethd_surface;
+typedef struct ethd__peer_mesh {
+  const char *name;
+  void *(*create)(const char *path); /* NULL: it can't be read */
+  uint32_t (*surfaces)(void *self, const double x[3], double range, struct ethd_surface *out, uint32_t most);
+  void (*destroy)(void *self);
+} ethd__peer_mesh;
+
 /* Returns the squared distance from x to a segment. */
 static inline double ethd__peer_squared(const double s[4], const double x[2]) {
   double ex = s[2] - s[0], ey = s[3] - s[1], ux = x[0] - s[0], uy = x[1] - s[1];

@@ -137,6 +137,7 @@ static void run(const char *folder, int quick) {
   bench_goal("hot mean from 100 to 100000 segments, times",
              mean_of(&h, OFFSET, ETHD__TAP_RAYS, MANY) / mean_of(&h, OFFSET, ETHD__TAP_RAYS, HUNDRED), 2.2, "");
   ethd__tick_space(&h.entries[h.at[OFFSET][ETHD__TAP_CENTRE][NONE]], quick);
+  ethd__tick_mesh(quick);
   for (size_t i = 0; i < h.count; i++) ethd__ticking_destroy(h.entries[i].data);
   free(ns);
   bench_close();

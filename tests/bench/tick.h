@@ -40,4 +40,7 @@ void ethd__tick_live(FILE *csv, int quick);
 /* Prints what a tick in space costs beside an entry of the plane's, and judges it. */
 void ethd__tick_space(const bench_entry *plane, int quick);
 
+/* Prints what the surfaces of a mesh cost in a tick. */
+void ethd__tick_mesh(int quick);
+
 #endif
