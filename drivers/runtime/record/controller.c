@@ -3,26 +3,33 @@
 #include <math.h>
 #include <string.h>
 
+/* The functions of a front: those of control.h or space.h behind a `void *`. */
+#define FRONT(front, type)                                                                              \
+  static ethd_status front##_create(const void *setup, void **out, ethd_error *error) {                 \
+    type *control;                                                                                      \
+    ethd_status status = type##_create(setup, &control, error);                                         \
+    *out = control;                                                                                     \
+    return status;                                                                                      \
+  }                                                                                                     \
+  static void front##_destroy(void *control) { type##_destroy(control); }                               \
+  static ethd_status front##_post(void *control, const void *setup, ethd_error *error) {                \
+    return type##_post(control, setup, error);                                                          \
+  }                                                                                                     \
+  static ethd_status front##_poll(void *control, ethd_event *out) { return type##_poll(control, out); } \
+  static void front##_restart(void *control) { type##_restart(control); }                               \
+  static void front##_acknowledge(void *control) { type##_acknowledge(control); }                       \
+  static double front##_clean_time(void *control) { return type##_clean_time(control); }                \
+  static void front##_counters(void *control, ethd_counters *out) { type##_counters(control, out); }
+#define FUNCTIONS(front)                                                                            \
+  .create = front##_create, .destroy = front##_destroy, .post = front##_post, .poll = front##_poll, \
+  .restart = front##_restart, .acknowledge = front##_acknowledge, .clean_time = front##_clean_time, \
+  .counters = front##_counters, .step = front##_step
+
+FRONT(plane, ethd_control)
+FRONT(space, ethd_space)
+
 /* ---- the plane ---- */
 
-static ethd_status plane_create(const void *setup, void **out, ethd_error *error) {
-  ethd_control *control;
-  ethd_status status = ethd_control_create(setup, &control, error);
-  *out = control;
-  return status;
-}
-
-static void plane_destroy(void *control) { ethd_control_destroy(control); }
-
-static ethd_status plane_post(void *control, const void *setup, ethd_error *error) {
-  return ethd_control_post(control, setup, error);
-}
-
-static ethd_status plane_poll(void *control, ethd_event *out) { return ethd_control_poll(control, out); }
-static void plane_restart(void *control) { ethd_control_restart(control); }
-static void plane_acknowledge(void *control) { ethd_control_acknowledge(control); }
-static double plane_clean_time(void *control) { return ethd_control_clean_time(control); }
-static void plane_counters(void *control, ethd_counters *out) { ethd_control_counters(control, out); }
 static void plane_set_heat(void *control, const double heat[2]) { ethd_control_set_heat(control, heat); }
 static void plane_set_memory(void *control, const double *memory) { ethd_control_set_memory(control, memory); }
 
@@ -33,38 +40,11 @@ static void plane_step(void *control, const void *row, void *trace) {
 
 static const ethd__controller plane = {.columns = ethd_trace_columns,
                                        .row_bytes = sizeof(ethd_trace),
-                                       .create = plane_create,
-                                       .destroy = plane_destroy,
-                                       .post = plane_post,
-                                       .poll = plane_poll,
-                                       .restart = plane_restart,
-                                       .acknowledge = plane_acknowledge,
-                                       .clean_time = plane_clean_time,
-                                       .counters = plane_counters,
                                        .set_heat = plane_set_heat,
                                        .set_memory = plane_set_memory,
-                                       .step = plane_step};
+                                       FUNCTIONS(plane)};
 
 /* ---- space ---- */
-
-static ethd_status space_create(const void *setup, void **out, ethd_error *error) {
-  ethd_space *space;
-  ethd_status status = ethd_space_create(setup, &space, error);
-  *out = space;
-  return status;
-}
-
-static void space_destroy(void *control) { ethd_space_destroy(control); }
-
-static ethd_status space_post(void *control, const void *setup, ethd_error *error) {
-  return ethd_space_post(control, setup, error);
-}
-
-static ethd_status space_poll(void *control, ethd_event *out) { return ethd_space_poll(control, out); }
-static void space_restart(void *control) { ethd_space_restart(control); }
-static void space_acknowledge(void *control) { ethd_space_acknowledge(control); }
-static double space_clean_time(void *control) { return ethd_space_clean_time(control); }
-static void space_counters(void *control, ethd_counters *out) { ethd_space_counters(control, out); }
 
 /* Gives the surfaces that the tick used; an impossible one if it refused them. */
 static uint32_t surfaces_of(const ethd_space_trace *row, ethd_surface out[ETHD_NEAR_MAX]) {
@@ -93,14 +73,6 @@ static void space_step(void *control, const void *row, void *trace) {
 static const ethd__controller space = {.columns = ethd_space_trace_columns,
                                        .row_bytes = sizeof(ethd_space_trace),
                                        .unrepeated = "overflow",
-                                       .create = space_create,
-                                       .destroy = space_destroy,
-                                       .post = space_post,
-                                       .poll = space_poll,
-                                       .restart = space_restart,
-                                       .acknowledge = space_acknowledge,
-                                       .clean_time = space_clean_time,
-                                       .counters = space_counters,
-                                       .step = space_step};
+                                       FUNCTIONS(space)};
 
 const ethd__controller *ethd__controller_of(const ethd_config *config) { return config->is_space ? &space : &plane; }

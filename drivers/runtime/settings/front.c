@@ -4,25 +4,24 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- the plane ---- */
+/* The functions of a front: those of control.h or space.h behind a `void *`. */
+#define FRONT(front, type)                                                                                           \
+  static ethd_method front##_chosen(const void *setup, const ethd_setup_part *part) {                                \
+    return type##_chosen(setup, part);                                                                               \
+  }                                                                                                                  \
+  static ethd_status front##_choose(void *setup, const char *section, const char *id, const ethd_law *const *laws) { \
+    return type##_choose(setup, section, id, laws, NULL);                                                            \
+  }                                                                                                                  \
+  static ethd_status front##_key_at(const void *setup, uint32_t index, ethd_setup_key *out) {                        \
+    return type##_key_at(setup, index, out);                                                                         \
+  }                                                                                                                  \
+  static ethd_status front##_set(void *setup, const char *name, double value) {                                      \
+    return type##_set(setup, name, value, NULL);                                                                     \
+  }                                                                                                                  \
+  static double front##_get(const void *setup, const char *name) { return type##_get(setup, name); }
 
-static ethd_method plane_chosen(const void *setup, const ethd_setup_part *part) {
-  return ethd_setup_chosen(setup, part);
-}
-
-static ethd_status plane_choose(void *setup, const char *section, const char *id, const ethd_law *const *laws) {
-  return ethd_setup_choose(setup, section, id, laws, NULL);
-}
-
-static ethd_status plane_key_at(const void *setup, uint32_t index, ethd_setup_key *out) {
-  return ethd_setup_key_at(setup, index, out);
-}
-
-static ethd_status plane_set(void *setup, const char *name, double value) {
-  return ethd_setup_set(setup, name, value, NULL);
-}
-
-static double plane_get(const void *setup, const char *name) { return ethd_setup_get(setup, name); }
+FRONT(plane, ethd_setup)
+FRONT(space, ethd_space)
 
 static ethd_status plane_check(const ethd_config *config, void *setup, ethd_error *error) {
   (void)config;
@@ -32,26 +31,6 @@ static ethd_status plane_check(const ethd_config *config, void *setup, ethd_erro
 const ethd__config_front ethd__front_plane = {ETHD__PLANE,  sizeof(ethd_setup), ethd_setup_part_of,
                                               plane_chosen, plane_choose,       plane_key_at,
                                               plane_set,    plane_get,          plane_check};
-
-/* ---- space ---- */
-
-static ethd_method space_chosen(const void *setup, const ethd_setup_part *part) {
-  return ethd_space_chosen(setup, part);
-}
-
-static ethd_status space_choose(void *setup, const char *section, const char *id, const ethd_law *const *laws) {
-  return ethd_space_choose(setup, section, id, laws, NULL);
-}
-
-static ethd_status space_key_at(const void *setup, uint32_t index, ethd_setup_key *out) {
-  return ethd_space_key_at(setup, index, out);
-}
-
-static ethd_status space_set(void *setup, const char *name, double value) {
-  return ethd_space_set(setup, name, value, NULL);
-}
-
-static double space_get(const void *setup, const char *name) { return ethd_space_get(setup, name); }
 
 /* Refuses value i of a material; `row`: what is allowed, NULL: the law has no such parameter. */
 static ethd_status refuse(const ethd_material *m, uint32_t i, ethd_status status, const ethd_param *row,
