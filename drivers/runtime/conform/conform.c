@@ -168,36 +168,18 @@ static ethd_verdict ask_counts(const ethd_conform_def *def, ethd_conform_answer 
                                   r.speed);
 }
 
-static const struct {
-  const char *name;
-  ethd_verdict (*ask)(const ethd_conform_def *def, ethd_conform_answer *a);
-  int moves;
-} questions[ETHD_QUESTIONS] = {{"table", ask_table, 0},
-                               {"open", ask_open, 0},
-                               {"limits", ask_limits, 0},
-                               {"sense", ask_sense, 0},
-                               {"zero", ask_zero, 0},
-                               {"sign", ask_sign, 1},
-                               {"counts", ask_counts, 1},
-                               {"watchdog", ethd__conform_watchdog, 1},
-                               {"silence", ethd__conform_silence, 1},
-                               {"safe", ethd__conform_safe, 1},
-                               {"restart", ethd__conform_restart, 1}};
+static const ethd__conform_question questions[ETHD_QUESTIONS] = {{"table", ask_table, false},
+                                                                 {"open", ask_open, false},
+                                                                 {"limits", ask_limits, false},
+                                                                 {"sense", ask_sense, false},
+                                                                 {"zero", ask_zero, false},
+                                                                 {"sign", ask_sign, true},
+                                                                 {"counts", ask_counts, true},
+                                                                 {"watchdog", ethd__conform_watchdog, true},
+                                                                 {"silence", ethd__conform_silence, true},
+                                                                 {"safe", ethd__conform_safe, true},
+                                                                 {"restart", ethd__conform_restart, true}};
 
 ethd_status ethd_conform(const ethd_conform_def *def, ethd_conform_answer answers[ETHD_QUESTIONS]) {
-  int broken = 0;
-  for (int i = 0; i < ETHD_QUESTIONS; i++) {
-    ethd_conform_answer *a = &answers[i];
-    a->question = questions[i].name;
-    if (i && answers[0].verdict == ETHD_VERDICT_BROKEN)
-      ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "the device can't be opened, or its table is broken");
-    else if (questions[i].moves && !(def->torque > 0 && isfinite(def->torque)))
-      ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "it would move the device");
-    else if (!ethd__conform_stopped(def))
-      (void)questions[i].ask(def, a);
-    if (ethd__conform_stopped(def)) ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "stopped");
-    broken |= a->verdict == ETHD_VERDICT_BROKEN;
-  }
-  if (ethd__conform_stopped(def)) return ETHD_E_UNFINISHED;
-  return broken ? ETHD_E_DEVICE : ETHD_OK;
+  return ethd__conform_ask(def, questions, ETHD_QUESTIONS, def->torque, answers);
 }

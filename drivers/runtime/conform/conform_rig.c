@@ -27,6 +27,25 @@ ethd_verdict ethd__conform_rig_answer(ethd_conform_answer *a, ethd_verdict verdi
 
 bool ethd__conform_stopped(const ethd_conform_def *def) { return def->stop && *def->stop; }
 
+ethd_status ethd__conform_ask(const ethd_conform_def *def, const ethd__conform_question *questions, int count,
+                              double push, ethd_conform_answer *answers) {
+  bool broken = false;
+  for (int i = 0; i < count; i++) {
+    ethd_conform_answer *a = &answers[i];
+    a->question = questions[i].name;
+    if (i && answers[0].verdict == ETHD_VERDICT_BROKEN)
+      ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "the device can't be opened, or its table is broken");
+    else if (questions[i].moves && !(def->torque > 0 && isfinite(push)))
+      ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "it would move the device");
+    else if (!ethd__conform_stopped(def))
+      (void)questions[i].ask(def, a);
+    if (ethd__conform_stopped(def)) ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "stopped");
+    broken |= a->verdict == ETHD_VERDICT_BROKEN;
+  }
+  if (ethd__conform_stopped(def)) return ETHD_E_UNFINISHED;
+  return broken ? ETHD_E_DEVICE : ETHD_OK;
+}
+
 /* ---- time ---- */
 
 void ethd__conform_rig_await(ethd__conform_rig *r) {

@@ -37,6 +37,16 @@ struct ethd__conform_rig {
 ethd_verdict ethd__conform_rig_answer(ethd_conform_answer *a, ethd_verdict verdict, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+typedef struct ethd__conform_question {
+  const char *name;
+  ethd_verdict (*ask)(const ethd_conform_def *def, ethd_conform_answer *a);
+  bool moves;
+} ethd__conform_question;
+
+/* Asks all questions, those that move the device only if it may be pushed; returns as ethd_conform does. */
+ethd_status ethd__conform_ask(const ethd_conform_def *def, const ethd__conform_question *questions, int count,
+                              double push, ethd_conform_answer *answers);
+
 /* Returns whether def->stop ends the questions. Then ticks take no time, and the device has been made safe. */
 bool ethd__conform_stopped(const ethd_conform_def *def);
 

@@ -38,13 +38,32 @@ static ethd_vec3 axis(int k) {
   return ethd_vec3_of(e);
 }
 
-/* Closes a device that says that it can't move along n, such as a planar arm at right angles to its plane. */
-static bool end_unable(ethd__space_rig *s, ethd_vec3 n) {
+/* A push along an axis, and what has followed from it. */
+typedef struct push {
+  ethd__space_rig s;
+  ethd_vec3 along, from, before; /* place, and sum of commands, at its begin */
+} push;
+
+static ethd_vec3 moved(const push *p) { return ethd_vec3_sub(place_of(&p->s), p->from); }
+static ethd_vec3 asked(const push *p) { return ethd_vec3_sub(p->s.way, p->before); }
+
+/* Begins a push in direction k of six. False: the device doesn't start, which the answer says, or says that it can't
+   move there, such as a planar arm at right angles to its plane. */
+static bool begin_push(const ethd_conform_def *def, int k, push *p, ethd_conform_answer *a) {
   double along[3];
-  ethd_vec3_put(n, along);
-  const bool unable = ethd_device_able(s->r.device, along).speed == 0; /* NaN: not known */
-  if (unable) ethd__conform_rig_end(&s->r);
-  return unable;
+  p->along = axis(k);
+  a->verdict = ETHD_VERDICT_KEPT;
+  if (!ethd__space_rig_begin(def, &p->s, a)) return false;
+  ethd__space_rig_run(&p->s, PAUSE, (ethd_vec3){0, 0, 0});
+  ethd_vec3_put(p->along, along);
+  if (ethd_device_able(p->s.r.device, along).speed == 0) { /* NaN: not known */
+    ethd__conform_rig_end(&p->s.r);
+    return false;
+  }
+  p->from = place_of(&p->s);
+  p->before = p->s.way;
+  ethd__space_rig_run(&p->s, PUSH, ethd_vec3_scale(push_of(def), p->along));
+  return true;
 }
 
 /* ---- questions ---- */
@@ -102,62 +121,57 @@ static ethd_verdict ask_space_zero(const ethd_conform_def *def, ethd_conform_ans
 /* Pushes in both directions of each axis: the effector moves there, as far as the commands that the device reports. */
 static ethd_verdict ask_space_axes(const ethd_conform_def *def, ethd_conform_answer *a) {
   const bool by_velocity = def->device->space->kind == ETHD_SPACE_VELOCITY;
-  const double push = push_of(def);
+  const double size = push_of(def);
   double worst = 0;
   for (int k = 0; k < 6; k++) {
-    const ethd_vec3 along = axis(k);
-    ethd__space_rig s;
-    if (!ethd__space_rig_begin(def, &s, a)) return a->verdict;
-    ethd__space_rig_run(&s, PAUSE, (ethd_vec3){0, 0, 0});
-    if (end_unable(&s, along)) continue;
-    const ethd_vec3 from = place_of(&s), before = s.way;
-    ethd__space_rig_run(&s, PUSH, ethd_vec3_scale(push, along));
-    const double way = ethd_vec3_dot(along, ethd_vec3_sub(place_of(&s), from));
-    const double wanted = ethd_vec3_dot(along, ethd_vec3_sub(s.way, before));
-    ethd__space_rig_run(&s, PAUSE, (ethd_vec3){0, 0, 0});
-    ethd__conform_rig_end(&s.r);
-    if (!(way > 0) || s.r.failed)
+    push p;
+    if (!begin_push(def, k, &p, a)) {
+      if (a->verdict) return a->verdict;
+      continue;
+    }
+    const double way = ethd_vec3_dot(p.along, moved(&p)), wanted = ethd_vec3_dot(p.along, asked(&p));
+    ethd__space_rig_run(&p.s, PAUSE, (ethd_vec3){0, 0, 0});
+    ethd__conform_rig_end(&p.s.r);
+    if (!(way > 0) || p.s.r.failed)
       return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN,
-                                      "%.3g %s in direction %c%d: it moved %.3g m; failed calls: %d", push,
-                                      by_velocity ? "m/s" : "N", "+-"[k % 2], k / 2 + 1, way, s.r.failed);
+                                      "%.3g %s in direction %c%d: it moved %.3g m; failed calls: %d", size,
+                                      by_velocity ? "m/s" : "N", "+-"[k % 2], k / 2 + 1, way, p.s.r.failed);
     worst = fmax(worst, fabs(way - wanted) / wanted);
   }
-  if (!by_velocity) return ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT, "%g N along each axis moved it there", push);
+  if (!by_velocity) return ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT, "%g N along each axis moved it there", size);
   return ethd__conform_rig_answer(
       a, worst <= OFF ? ETHD_VERDICT_KEPT : ETHD_VERDICT_BROKEN,
-      "%g m/s along each axis: its motion and its reported commands differ by a share of %.2g", push, worst);
+      "%g m/s along each axis: its motion and its reported commands differ by a share of %.2g", size, worst);
 }
 
 /* At the end of its travel, in both directions of each axis, the device stops by itself, reports so, and comes back. A
    real one would hit what stands around it, so only a simulated one is driven there. */
 static ethd_verdict ask_space_ends(const ethd_conform_def *def, ethd_conform_answer *a) {
-  const double push = push_of(def), step = push * PUSH;
+  const double size = push_of(def), step = size * PUSH;
   double worst = 0, shortest = INFINITY, longest = 0, slowest = 0;
   if (!def->device->is_virtual || def->device->space->kind != ETHD_SPACE_VELOCITY)
     return ethd__conform_rig_answer(
         a, ETHD_VERDICT_NOT_ASKED, "only a simulated device that takes velocities is driven to the ends of its travel");
   for (int k = 0; k < 6; k++) {
-    const ethd_vec3 along = axis(k);
-    ethd__space_rig s;
-    if (!ethd__space_rig_begin(def, &s, a)) return a->verdict;
-    ethd__space_rig_run(&s, PAUSE, (ethd_vec3){0, 0, 0});
-    if (end_unable(&s, along)) continue;
-    const ethd_vec3 from = place_of(&s), before = s.way;
-    ethd__space_rig_run(&s, PUSH, ethd_vec3_scale(push, along));
+    push p;
+    if (!begin_push(def, k, &p, a)) {
+      if (a->verdict) return a->verdict;
+      continue;
+    }
     double sum = 0, moves = step, back = 0;
-    for (; sum < FAR && moves > ENDS * step; sum += moves) moves = ethd__space_rig_moved(&s, along, true, PUSH);
-    const ethd_vec3 way = ethd_vec3_sub(place_of(&s), from);
-    const double length = ethd_vec3_dot(along, way);
-    const double off = ethd_vec3_norm(ethd_vec3_sub(way, ethd_vec3_sub(s.way, before)));
-    ethd__space_rig_run(&s, PAUSE, ethd_vec3_scale(-push, along));
-    while (back < BACK && ethd__space_rig_moved(&s, along, true, PUSH) > -step / 2) back += step;
-    ethd__conform_rig_end(&s.r);
-    if (s.r.failed || !s.r.finite || !(off <= STILL + DRIFT * ethd_vec3_norm(way)) || back >= BACK)
+    for (; sum < FAR && moves > ENDS * step; sum += moves) moves = ethd__space_rig_moved(&p.s, p.along, true, PUSH);
+    const ethd_vec3 way = moved(&p);
+    const double length = ethd_vec3_dot(p.along, way);
+    const double off = ethd_vec3_norm(ethd_vec3_sub(way, asked(&p)));
+    ethd__space_rig_run(&p.s, PAUSE, ethd_vec3_scale(-size, p.along));
+    while (back < BACK && ethd__space_rig_moved(&p.s, p.along, true, PUSH) > -step / 2) back += step;
+    ethd__conform_rig_end(&p.s.r);
+    if (p.s.r.failed || !p.s.r.finite || !(off <= STILL + DRIFT * ethd_vec3_norm(way)) || back >= BACK)
       return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN,
                                       "direction %c%d: stopped after %.3g m, %.3g m off its commands, and %s; failed "
                                       "calls: %d",
                                       "+-"[k % 2], k / 2 + 1, length, off,
-                                      back < BACK ? "came back" : "didn't come back", s.r.failed);
+                                      back < BACK ? "came back" : "didn't come back", p.s.r.failed);
     if (length >= FAR)
       return ethd__conform_rig_answer(a, ETHD_VERDICT_AT_RISK, "direction %c%d: no end of its travel within %g m",
                                       "+-"[k % 2], k / 2 + 1, FAR);
@@ -169,7 +183,7 @@ static ethd_verdict ask_space_ends(const ethd_conform_def *def, ethd_conform_ans
   return ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT,
                                   "it stopped after %.3g to %.3g m, at most %.2g m off its commands, and came back "
                                   "within %.2g s",
-                                  shortest, longest, worst, slowest / push + PUSH);
+                                  shortest, longest, worst, slowest / size + PUSH);
 }
 
 /* Made safe while it moves, the device takes the safe state of its table, whatever is written. */
@@ -218,29 +232,11 @@ static ethd_verdict ask_space_restart(const ethd_conform_def *def, ethd_conform_
                                   again);
 }
 
-static const struct {
-  const char *name;
-  ethd_verdict (*ask)(const ethd_conform_def *def, ethd_conform_answer *a);
-  bool moves;
-} questions[ETHD_SPACE_QUESTIONS] = {{"table", ask_space_table, false}, {"sense", ask_space_sense, false},
-                                     {"calls", ask_space_calls, false}, {"zero", ask_space_zero, false},
-                                     {"axes", ask_space_axes, true},    {"ends", ask_space_ends, true},
-                                     {"safe", ask_space_safe, true},    {"restart", ask_space_restart, true}};
+static const ethd__conform_question questions[ETHD_SPACE_QUESTIONS] = {
+    {"table", ask_space_table, false}, {"sense", ask_space_sense, false},   {"calls", ask_space_calls, false},
+    {"zero", ask_space_zero, false},   {"axes", ask_space_axes, true},      {"ends", ask_space_ends, true},
+    {"safe", ask_space_safe, true},    {"restart", ask_space_restart, true}};
 
 ethd_status ethd_conform_space(const ethd_conform_def *def, ethd_conform_answer answers[ETHD_SPACE_QUESTIONS]) {
-  bool broken = false;
-  for (int i = 0; i < ETHD_SPACE_QUESTIONS; i++) {
-    ethd_conform_answer *a = &answers[i];
-    a->question = questions[i].name;
-    if (i && answers[0].verdict == ETHD_VERDICT_BROKEN)
-      ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "the device can't be opened, or its table is broken");
-    else if (questions[i].moves && !(def->torque > 0 && isfinite(push_of(def))))
-      ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "it would move the device");
-    else if (!ethd__conform_stopped(def))
-      (void)questions[i].ask(def, a);
-    if (ethd__conform_stopped(def)) ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "stopped");
-    broken |= a->verdict == ETHD_VERDICT_BROKEN;
-  }
-  if (ethd__conform_stopped(def)) return ETHD_E_UNFINISHED;
-  return broken ? ETHD_E_DEVICE : ETHD_OK;
+  return ethd__conform_ask(def, questions, ETHD_SPACE_QUESTIONS, push_of(def), answers);
 }
