@@ -69,15 +69,6 @@ void ethd__body_pad(const ethd__body *body, const ethd__sim_state *state, double
 /* Returns whether pad and ring touch in this state; ignores state->touch. */
 ethd__touch ethd__body_touch(const ethd__body *body, const ethd__sim_state *state) ETHD_RT;
 
-/* Fills the accelerations, for methods that need them; series.c has the same equations term by term. An undisturbed
-   finger is on the hand's path: spring and damper act on its distance from the path, which only a touch causes, m (a_f
-   - a) = K (x - x_f) + B (v - v_f) + pad. */
-void ethd__body_accelerate(const ethd__body *body, ethd__touch touch, const ethd__sim_motion *hand, const double *q,
-                           const double *v, double *out) ETHD_RT;
-
-/* Returns the kinetic energy plus that of pad, hand and transmission, J; `hand` is the path's position. */
-double ethd__body_energy(const ethd__body *body, const ethd__sim_state *state, ethd_vec hand) ETHD_RT;
-
 /* Advances from t to t + h by steps of power series. Within that time only touch may change; its changes are located to
    1e-12 s. */
 void ethd__body_advance(const ethd__body *body, const ethd__piece *piece, double t, double h,

@@ -6,6 +6,7 @@
 #include "bench/bench.h"
 #include "bench/problem.h"
 #include "cli/cli.h"
+#include "ethd/maths.h"
 
 enum { CONTENDERS_MAX = 120, TAPS = 4, N = ETHD__ODE_SIZE, HALF = N / 2 };
 
@@ -49,34 +50,61 @@ static void pack(const ethd__sim_state *s, double *y) {
   memcpy(y + HALF, s->v, HALF * sizeof *y);
 }
 
+/* Returns the pad's depth; fills the vector from ring to finger and 1 + c p'. */
+static double pad(const plain *p, const double *y, ethd_vec *r, double *damping) {
+  ethd__sim_state s;
+  ethd_vec x, v;
+  unpack(y, p->touch, &s);
+  ethd__body_ring(p->body, &s, &x, &v);
+  *r = (ethd_vec){y[2] - x.x, y[3] - x.y};
+  const double distance = ethd_vec_norm(*r);
+  *damping = 1 + p->body->pad_damping * ethd_vec_dot(*r, (ethd_vec){y[6] - v.x, y[7] - v.y}) / distance;
+  return distance - p->body->gap;
+}
+
+/* Plant n: two rigid links without coupling, each of which its motor moves. */
 static void rate(void *self, double t, const double *y, double *out) {
   plain *p = self;
+  const ethd__body *b = p->body;
   ethd__sim_motion hand = ethd__piece_at(p->piece, t);
+  ethd_vec f = {b->hand_stiffness * (hand.x.x - y[2]) + b->hand_damping * (hand.v.x - y[6]),
+                b->hand_stiffness * (hand.x.y - y[3]) + b->hand_damping * (hand.v.y - y[7])};
+  double g[2], damping;
   if (p->live) {
     ethd__sim_state s;
     unpack(y, ETHD__APART, &s);
-    p->touch = ethd__body_touch(p->body, &s);
+    p->touch = ethd__body_touch(b, &s);
+  }
+  for (int i = 0; i < 2; i++)
+    g[i] = b->torque[i] - b->friction[i] * ethd_tanh(b->sharpness[i] * y[4 + i]) - b->viscous[i] * y[4 + i];
+  if (p->touch == ETHD__PRESSING) {
+    ethd__two sine, cosine;
+    ethd_vec r;
+    const double force = b->pad_stiffness * pad(p, y, &r, &damping) * damping;
+    const ethd_vec push = ethd_vec_scale(force / ethd_vec_norm(r), r);
+    ethd__body_waves(b, (ethd__two){y[0], y[1]}, &sine, &cosine);
+    f = ethd_vec_sub(f, push);
+    for (int i = 0; i < 2; i++) g[i] += b->link[i] * (cosine[i] * push.y - sine[i] * push.x);
   }
   memcpy(out, y + HALF, HALF * sizeof *y);
-  ethd__body_accelerate(p->body, p->touch, &hand, y, y + HALF, out + HALF);
+  for (int i = 0; i < 2; i++) out[4 + i] = g[i] / b->inertia[i];
+  out[6] = hand.a.x + f.x / b->finger_mass;
+  out[7] = hand.a.y + f.y / b->finger_mass;
 }
 
 /* Apart: -p; touching: p and 1 + c p', or the latter's opposite while the pad leaves. */
 static void watch(void *self, double t, const double *y, double out[2]) {
   const plain *p = self;
-  ethd__sim_state s;
-  ethd_vec x, v;
+  ethd_vec r;
+  double damping;
+  const double depth = pad(p, y, &r, &damping);
   (void)t;
-  unpack(y, p->touch, &s);
-  ethd__body_ring(p->body, &s, &x, &v);
-  ethd_vec r = {y[2] - x.x, y[3] - x.y}, away = {y[6] - v.x, y[7] - v.y};
-  double distance = ethd_vec_norm(r), depth = distance - p->body->gap;
   out[0] = depth;
   out[1] = 1;
   if (p->touch == ETHD__APART)
     out[0] = -depth;
   else
-    out[1] = 1 + p->body->pad_damping * ethd_vec_dot(r, away) / distance;
+    out[1] = damping;
   if (p->touch == ETHD__LEAVING) out[1] = -out[1];
 }
 
