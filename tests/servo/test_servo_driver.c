@@ -100,60 +100,6 @@ TEST(test_unwraps) {
   close_device();
 }
 
-/* A counter that jumps is dropped and told; once more within 10 ms it is grave. */
-TEST(test_encoder_jump) {
-  start_device();
-  for (int i = 0; i < 20; i++) tick(0, 0);
-  place(500);
-  ck_assert_int_eq(tick(0, 0), ETHD_OK);
-  ck_assert_int_eq(sense.faults, ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP));
-  ck_assert_int_eq(sense.grave, 0);
-  ck_assert_double_eq_tol(sense.q[0], 0, COUNT);
-  place(0);
-  ck_assert_int_eq(tick(0, 0), ETHD_OK);
-  ck_assert_int_eq(sense.faults, 0);
-  place(-500);
-  tick(0, 0);
-  ck_assert_int_eq(sense.faults & sense.grave, ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP));
-  close_device();
-}
-
-/* By default, from the drive's limits: no key of the map asks for it. */
-TEST(test_encoder_frozen) {
-  start_device();
-  for (int i = 0; i < 20; i++) tick(0, 0);
-  int n = 0;
-  do tick(1, 0); /* 0.3 of 1.96 Nm would do */
-  while (++n < 200 && !shows(ETHD_FAULT_ENCODER_FROZEN));
-  ck_assert_int_ge(n, 50);
-  ck_assert_int_le(n, 53); /* 50 ms, behind a tick of age and one until the torque is out */
-  /* a joint that turns a count now and then isn't frozen */
-  for (int i = 0; i < 300; i++) {
-    if (i % 40 == 0) place(1 + i / 40);
-    tick(1, 0);
-    ck_assert(i < 2 || !shows(ETHD_FAULT_ENCODER_FROZEN));
-  }
-  close_device();
-}
-
-/* A joint of 0.01 kg m^2 that speeds up as 0.5 Nm bids, read with the wrong sign, runs away from the torque. */
-TEST(test_encoder_reversed) {
-  for (int sign = -1; sign <= 1; sign += 2) {
-    start_device();
-    for (int i = 0; i < 20; i++) tick(0, 0);
-    int n = 0;
-    do {
-      place(sign * (int64_t)lrint(0.5 / 0.01 * (1e-3 * n) * (1e-3 * n) / 2 / COUNT));
-      tick(0.5, 0); /* 0.15 of 1.96 Nm would do */
-    } while (++n < 60 && !shows(ETHD_FAULT_ENCODER_REVERSED));
-    if (sign > 0)
-      ck_assert_int_eq(n, 60);
-    else
-      ck_assert_msg(n > 20 && n <= 25, "%d ticks", n); /* 20 ms from the motion's begin, 2 of age, 2 until it shows */
-    close_device();
-  }
-}
-
 TEST(test_speed_limit) {
   open_device();
   ck_assert_double_eq(servo->limits(device).speed, 1.2);

@@ -24,17 +24,6 @@ TEST(test_missing_once) {
   close_device();
 }
 
-TEST(test_feedback_old) {
-  start_device();
-  for (int i = 0; i < 20; i++) tick(0.1, 0);
-  double q = sense.q[0];
-  spoil(1000, MOCK_DROP, 0);
-  ck_assert_int_eq(ticks_until(ETHD_FAULT_FEEDBACK_OLD, 20), 6); /* the first tick over 5 ms */
-  ck_assert_int_eq(last, ETHD_STATUS_STALE);
-  ck_assert_double_eq(sense.q[0], q);
-  close_device();
-}
-
 TEST(test_drive_fault) {
   start_device();
   for (int i = 0; i < 20; i++) tick(0.1, 0);
@@ -82,34 +71,6 @@ TEST(test_why) {
   drive.stuck = 700;
   ck_assert_int_eq(servo->start(device), ETHD_E_DEVICE);
   ck_assert_msg(strstr(servo->why(device), "still holds an old set-point"), "%s", servo->why(device));
-  close_device();
-}
-
-TEST(test_bus_voltage) {
-  start_device();
-  tick(0, 0);
-  drive.words[MOCK_VOLTAGE] = 230;
-  ck_assert_int_eq(ticks_until(ETHD_FAULT_BUS_VOLTAGE, 5), 1);
-  drive.words[MOCK_VOLTAGE] = 480;
-  tick(0, 0);
-  ck_assert(!shows(ETHD_FAULT_BUS_VOLTAGE));
-  drive.words[MOCK_VOLTAGE] = 561;
-  ck_assert_int_eq(ticks_until(ETHD_FAULT_BUS_VOLTAGE, 5), 1);
-  close_device();
-}
-
-TEST(test_not_followed) {
-  start_device();
-  for (int i = 0; i < 20; i++) tick(0.1, 0);
-  drive.frozen = 1;
-  int n = 0;
-  do tick(1, 0);
-  while (++n < 50 && !shows(ETHD_FAULT_NOT_FOLLOWED));
-  ck_assert_int_ge(n, 20);
-  ck_assert_int_le(n, 23); /* 20 ms, behind a tick of age */
-  drive.frozen = 0;
-  tick(1, 0);
-  ck_assert(!shows(ETHD_FAULT_NOT_FOLLOWED));
   close_device();
 }
 

@@ -195,23 +195,6 @@ TEST(test_words_back) {
   }
 }
 
-/* Whatever torque is asked for, what goes out is within the limits, the right way round. */
-TEST(test_limits) {
-  read_map("apps/config/svd48v.map");
-  ck_assert_int_eq(try(text), ETHD_OK);
-  ethd__servo_register r = *named("torque1");
-  r.reversed = 1;
-  for (uint64_t i = 0; i < 2000; i++) {
-    double joint = draw(i, -5, 5), raw = ethd__servo_raw(&r, joint), most = 2.5 * 0.0389 * 12;
-    ck_assert(fabs(raw) <= 25 && raw == rint(raw));
-    double cut = fmin(fmax(joint, -most), most);
-    ck_assert_double_eq_tol(ethd__servo_joint(&r, raw), cut, 0.1 * 0.0389 * 12);
-  }
-  ck_assert_double_eq(ethd__servo_raw(&r, (double)NAN), 0);
-  r.max = 0.17; /* rounding doesn't pass a limit either */
-  ck_assert_double_eq(ethd__servo_raw(&r, -5), 1);
-}
-
 /* Less than a count remains: never more than was asked for, in its direction, and a torque of the words stays itself. */
 static void rounds(const ethd__servo_register *r, double joint) {
   uint16_t words[2];

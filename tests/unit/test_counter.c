@@ -191,13 +191,13 @@ TEST(test_reset_counter) {
   D.close(d);
 }
 
-/* A joint that stands under a changed torque is frozen, but not once the device has let go of the torque. */
+/* Without a setting, too: a joint that stands under a changed torque is frozen, but not once the device has let go of the torque. */
 TEST(test_frozen_only_under_torque) {
   int64_t seen[2] = {0, 0};
   mock_counter_install();
   for (int is_safe = 0; is_safe < 2; is_safe++) {
-    void *d = open_with((const char *const[]){"freeze_torque", "0.3", "freeze_time", "0.05", NULL});
-    const ethd_command none = {{0, 0}, 0, 0}, push = {{1, 0}, 0, 0};
+    void *d = open_with((const char *const[]){NULL});
+    const ethd_command none = {{0, 0}, 0, 0}, push = {{0.5, 0}, 0, 0};
     ck_assert_int_eq(D.start(d), ETHD_OK);
     for (int i = 0; i < 200; i++) {
       ck_assert_int_eq(D.write(d, i * (int64_t)MS, i < 100 ? &none : &push), ETHD_OK);
@@ -297,22 +297,6 @@ TEST_LOOP(test_drivers_of_the_kernel, 0, 5) {
     ck_assert_double_eq_tol(s.q[1], PER_COUNT * (double)at, 1e-12);
   }
   ck_assert_int_eq(faults, 0);
-  D.close(d);
-}
-
-/* Without a setting, too: a joint that stands under torque is a fault. */
-TEST(test_frozen_by_default) {
-  int64_t seen = 0;
-  mock_counter_install();
-  void *d = open_with((const char *const[]){NULL});
-  const ethd_command none = {{0, 0}, 0, 0}, push = {{0.5, 0}, 0, 0};
-  ck_assert_int_eq(D.start(d), ETHD_OK);
-  for (int i = 0; i < 200; i++) {
-    ck_assert_int_eq(D.write(d, i * (int64_t)MS, i < 100 ? &none : &push), ETHD_OK);
-    ethd_sense s = sample(d, i + 1, ETHD_OK);
-    seen |= s.faults | s.grave;
-  }
-  ck_assert_int_eq(seen, ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_FROZEN));
   D.close(d);
 }
 

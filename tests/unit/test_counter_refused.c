@@ -110,35 +110,6 @@ TEST(test_counters_that_do_not_count) {
   D.close(d);
 }
 
-TEST(test_settings_that_cannot_be) {
-  static const struct {
-    const char *key, *value, *said;
-    ethd_status status;
-  } cases[] = {
-      {"count1", "one", "c.ini:2: device.count1: found \"one\", a whole number from 0 to 255 is allowed", ETHD_E_RANGE},
-      {"count1", "-1", "c.ini:2: device.count1: found \"-1\", a whole number from 0 to 255 is allowed", ETHD_E_RANGE},
-      {"count2", "256", "c.ini:2: device.count2: found \"256\", a whole number from 0 to 255 is allowed", ETHD_E_RANGE},
-      {"channel1", "1.5", "c.ini:2: device.channel1: found \"1.5\", a whole number from 0 to 255 is allowed",
-       ETHD_E_RANGE},
-      {"channel2", "nan", "c.ini:2: device.channel2: found \"nan\", a whole number from 0 to 255 is allowed",
-       ETHD_E_RANGE},
-      {"sign1", "0.5", "c.ini:2: device.sign1: found \"0.5\", 1|-1 is allowed", ETHD_E_UNKNOWN},
-      {"width", "8.5", "c.ini:2: device.width: found \"8.5\", a whole number from 0 to 64 is allowed", ETHD_E_RANGE},
-      {"device2",
-       "/dev/"
-       "a-name-that-is-longer-than-any-counter-of-the-kernel-has-a-name-that-is-longer-than-any-counter-of-the-kernel-"
-       "has-",
-       "c.ini:2: device.device2: found \"/dev/a-name-that-is-longer-than-any-counter-of-the...\", at most 95 "
-       "characters is "
-       "allowed",
-       ETHD_E_RANGE},
-  };
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    mock_counter_install();
-    expect(cases[i].key, cases[i].value, cases[i].status, cases[i].said);
-  }
-}
-
 /* What is switched off is said; an encoder whose marks are right has nothing to say. */
 TEST(test_remarks) {
   void *d;
