@@ -7,18 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "clock.h"
 #include "ethd/cell.h"
 #include "ethd/fault.h"
 #include "no_joints.h"
 #include "proximity_ring/empty.h"
 #include "proximity_ring/port.h"
+#include "proximity_ring/receiver.h"
 #include "proximity_ring/settings.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define WAIT_MS 20                             /* longest wait of one call of service for bytes */
-#define ROOM 4096                              /* bytes of one read */
 #define GAP_NS (1500000000 / ETHD__FRAME_RATE) /* without a frame means that at least one is lost */
 
 /* The I/O thread's data for the control thread. */
@@ -47,7 +45,8 @@ typedef struct ring {
 
 /* ---- I/O ---- */
 
-static void take(ring *r, const uint8_t *bytes, size_t count, int64_t arrival_ns) {
+static void take(void *device, const uint8_t *bytes, size_t count, int64_t arrival_ns) {
+  ring *r = device;
   const uint8_t *at = bytes;
   ethd__ring_reading reading;
   while (ethd__receiver_next(&r->receiver, &at, bytes + count, arrival_ns, &reading)) {
@@ -58,37 +57,12 @@ static void take(ring *r, const uint8_t *bytes, size_t count, int64_t arrival_ns
   ethd_cell_put(r->cell, &r->newest);
 }
 
-static ethd_status reopen(ring *r, int64_t now_ns) {
-  char message[ETHD_MESSAGE_MAX];
-  if (now_ns < r->port.attempt_ns) return ETHD_STATUS_STALE;
-  ethd_status status = ethd__ring_port_open(&r->port, now_ns, message);
-  if (!status) ethd__receiver_restart(&r->receiver);
-  return status;
-}
+static void restart(void *device) { ethd__receiver_restart(&((ring *)device)->receiver); }
 
-/* On a virtual clock nothing waits, and all bytes count as arrived at this instant. */
 static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
   ring *r = device;
-  uint8_t bytes[ROOM];
   (void)unit;
-  if (r->port.fd < 0) {
-    pthread_mutex_lock(&r->lock);
-    ethd_status status = reopen(r, now_ns);
-    pthread_mutex_unlock(&r->lock);
-    if (status) return status;
-  }
-  if (ethd__ring_port_was_deaf(&r->port, now_ns)) {
-    pthread_mutex_lock(&r->lock);
-    ethd__receiver_restart(&r->receiver);
-    pthread_mutex_unlock(&r->lock);
-  }
-  int64_t got = ethd__ring_port_read(&r->port, r->is_virtual ? 0 : WAIT_MS, bytes, sizeof bytes);
-  int64_t arrival_ns = r->is_virtual ? now_ns : ethd__clock_now();
-  if (got <= 0) return got < 0 ? ETHD_E_DEVICE : ETHD_OK;
-  pthread_mutex_lock(&r->lock);
-  take(r, bytes, (size_t)got, arrival_ns);
-  pthread_mutex_unlock(&r->lock);
-  return ETHD_OK;
+  return ethd__ring_port_service(&r->port, &(ethd__ring_listener){r, &r->lock, r->is_virtual, take, restart}, now_ns);
 }
 
 /* ---- [rt] ---- */
@@ -162,31 +136,7 @@ static ethd_status prepare(const ethd_device_def *def, ring *r, char *message) {
   return status;
 }
 
-static ethd_status no_frames(const ring *r, const ethd__decoder *d, uint64_t bytes, char *message) {
-  double seconds = r->settings.p[ETHD__RING_PATIENCE];
-  if (!bytes)
-    return ethd__say(message, ETHD_E_DEVICE, "%s: nothing came in %g s: is the ring connected and powered?",
-                     r->port.path, seconds);
-  return ethd__say(message, ETHD_E_DEVICE, "%s: %llu bytes but %llu frames in %g s: is its baud rate %u?", r->port.path,
-                   (unsigned long long)bytes, (unsigned long long)d->counters.frames, seconds, r->port.baud);
-}
-
-/* Listens to the first frames: they show whether the line is right, and they measure the darks. */
-static ethd_status listen_first(ring *r, ethd__empty *empty, char *message) {
-  ethd__decoder d = {0};
-  uint8_t bytes[ROOM];
-  uint64_t all = 0;
-  int64_t end = ethd__clock_now() + (int64_t)(1e9 * r->settings.p[ETHD__RING_PATIENCE]);
-  while (empty->frames < ETHD__EMPTY_FRAMES && ethd__clock_now() < end) {
-    int64_t got = ethd__ring_port_read(&r->port, WAIT_MS, bytes, sizeof bytes);
-    if (got < 0) return ethd__say(message, ETHD_E_DEVICE, "%s: the line is gone", r->port.path);
-    const uint8_t *at = bytes;
-    ethd__ring_frame frame;
-    while (ethd__decoder_next(&d, &at, bytes + got, &frame)) ethd__empty_add(empty, &frame);
-    all += (uint64_t)got;
-  }
-  return empty->frames < ETHD__EMPTY_FRAMES ? no_frames(r, &d, all, message) : ETHD_OK;
-}
+static void add(void *empty, const ethd__ring_frame *frame) { ethd__empty_add(empty, frame); }
 
 static ethd_status check_darks(const ring *r, char *message) {
   for (int k = 0; k < ETHD_RAYS; k++)
@@ -199,8 +149,8 @@ static ethd_status check_darks(const ring *r, char *message) {
 static ethd_status listen_to(ring *r, double ring_radius, char *message) {
   char what[ETHD_MESSAGE_MAX];
   ethd__empty empty = {0};
-  ethd_status status = ethd__ring_port_open(&r->port, ethd__clock_now(), message);
-  if (!status) status = listen_first(r, &empty, message);
+  ethd_status status =
+      ethd__ring_port_listen(&r->port, r->settings.p[ETHD__RING_PATIENCE], ETHD__EMPTY_FRAMES, add, &empty, message);
   if (status) return status;
   if (r->settings.p[ETHD__RING_EMPTY] == 1) return check_darks(r, message);
   status = ethd__empty_check(&empty, ring_radius, &r->receiver.calibration, what);

@@ -183,7 +183,7 @@ TEST(test_refused_by_what_comes) {
   void *device;
   plug(&b);
   ck_assert_int_eq(open_or_close(&def, &device), ETHD_E_DEVICE);
-  ck_assert_ptr_nonnull(strstr(message, "nothing came in 0.3 s: is the ring connected and powered?"));
+  ck_assert_ptr_nonnull(strstr(message, "nothing came in 0.3 s: is the sensor connected and powered?"));
   ck_assert_int_eq(open_with(&b, patient, 2, &device), ETHD_E_DEVICE);
   ck_assert_msg(strstr(message, "are allowed in an empty ring: remove the object") != NULL, "%s", message);
   unlink(link_path);
