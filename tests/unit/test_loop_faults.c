@@ -89,38 +89,6 @@ TEST(test_limit_of_the_device) {
   bench_close(&b);
 }
 
-/* Five short ones in a row fill the bucket, one in eleven don't, one in five do in the end. */
-TEST_LOOP(test_often_late, 0, 3) {
-  const int every[] = {1, 11, 5};
-  bench b;
-  bench_open(&b);
-  b.def.gap = 0.005;
-  for (int i = 0; i < 60; i++) b.d.stall_write[i] = i % every[_i] == 0 ? PERIOD + PERIOD / 2 : 0;
-  bench_start(&b);
-  int at = -1;
-  for (int i = 0; i < 60; i++)
-    if (rows_of_tick(&b) & BIT(OVERRUNS) && at < 0) at = i;
-  ck_assert_int_eq(at, _i == 0 ? 5 : _i == 1 ? -1 : 36); /* 10 + 6 k >= 50, k = 7 */
-  bench_close(&b);
-}
-
-TEST(test_silent_application) {
-  bench b;
-  bench_open(&b);
-  b.def.heartbeat = 0.010;
-  bench_start(&b);
-  for (int i = 0; i < 40; i++) {
-    if (i % 9 == 0) ethd_loop_beat(b.loop);
-    ck_assert_int_eq(rows_of_tick(&b), 0);
-  }
-  int i = 0; /* the last beat was at tick 36 */
-  while (!rows_of_tick(&b)) i++;
-  ck_assert_int_eq(i, 7);
-  ck_assert_int_eq(ethd_loop_armed(b.loop), 0);
-  ck_assert_int_eq(bench_tick(&b).trace.fault, ETHD_FAULT_APPLICATION);
-  bench_close(&b);
-}
-
 TEST(test_raise) {
   bench b;
   bench_open(&b);
