@@ -1,15 +1,12 @@
-/* Small damage to one frame: each length, each bit, each pair of bits; of the servo's own
-   framing and of the proximity ring's. Nothing damaged is taken for an answer or a frame, and how many cases there were
-   is asserted, so that none is left out unseen. The answers are put together here, with the checksum of the test's own
-   drive. */
+/* Small damage to a drive's answer: each length, each bit, each pair of bits, in the servo's own framing. Nothing damaged
+   is taken for an answer, and how many cases there were is asserted, so that none is left out unseen. The answers are put
+   together here, with the checksum of the test's own drive. */
 #include <modbus/modbus.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "proximity_ring/decoder.h"
 #include "servo/frame.h"
 #include "servo/mock.h"
-#include "unit/draw.h"
 #include "unit/rig.h"
 
 #define WORDS 4
@@ -134,67 +131,4 @@ TEST(test_servo) {
   ck_assert_int_eq(s.bits, 8 * (2 * (3 * 40 + 32) + 3 * 4 * 9 + 48));
   ck_assert_int_eq(s.pairs, 2 * (3 * (56 * 55 + 72 * 71 + 88 * 87 + 104 * 103) + 4 * 64 * 63) / 2);
   ck_assert_int_eq(s.data, 8 * 3 * (2 + 4 + 6 + 8));
-}
-
-/* ---- the ring's frames ---- */
-
-static ethd__ring_frame frames[3];
-static uint8_t wire[3][ETHD__FRAME_WIRE];
-
-static bool is_frame_of_ours(const ethd__ring_frame *f) {
-  for (int i = 0; i < 3; i++)
-    if (f->seq == frames[i].seq && f->t_us == frames[i].t_us && f->flags == frames[i].flags &&
-        !memcmp(f->counts, frames[i].counts, sizeof f->counts))
-      return true;
-  return false;
-}
-
-/* A good frame, `middle`, a good frame: how many come out; each must be one that was sent. */
-static int decode(const uint8_t *middle, size_t length) {
-  uint8_t bytes[4 * ETHD__FRAME_WIRE + 1] = {0};
-  ethd__decoder d = {.held = 0};
-  ethd__ring_frame out;
-  size_t n = 1;
-  int count = 0;
-  memcpy(bytes + n, wire[0], ETHD__FRAME_WIRE), n += ETHD__FRAME_WIRE;
-  memcpy(bytes + n, middle, length), n += length;
-  memcpy(bytes + n, wire[2], ETHD__FRAME_WIRE), n += ETHD__FRAME_WIRE;
-  for (const uint8_t *at = bytes; ethd__decoder_next(&d, &at, bytes + n, &out); count++)
-    ck_assert_msg(is_frame_of_ours(&out), "a damaged frame passes");
-  return count;
-}
-
-TEST(test_ring) {
-  const int bits = 8 * ETHD__FRAME_WIRE;
-  long lengths = 0, flips = 0, pairs = 0;
-  for (int i = 0; i < 3; i++) {
-    frames[i] = (ethd__ring_frame){
-        .type = ETHD__FRAME_TYPE, .seq = (uint16_t)(300 + i), .t_us = 1000000u + 3333u * (uint32_t)i};
-    for (int k = 0; k < ETHD__FRAME_SENSORS; k++) frames[i].counts[k] = (uint16_t)draw_bits((uint64_t)(16 * i + k));
-    ethd__frame_encode(&frames[i], wire[i]);
-  }
-  ck_assert_int_eq(decode(wire[1], ETHD__FRAME_WIRE), 3);
-  for (size_t n = 0; n < ETHD__FRAME_WIRE; n++, lengths++) ck_assert_int_le(decode(wire[1], n), 2);
-  for (size_t n = 1; n <= ETHD__FRAME_WIRE; n++, lengths++) { /* longer: by bytes before its zero */
-    uint8_t longer[2 * ETHD__FRAME_WIRE];
-    memset(longer, 0x55, sizeof longer);
-    memcpy(longer, wire[1], ETHD__FRAME_WIRE - 1);
-    longer[ETHD__FRAME_WIRE - 1 + n] = 0;
-    ck_assert_int_eq(decode(longer, ETHD__FRAME_WIRE + n), 2);
-  }
-  for (int a = 0; a < bits; a++, flips++) {
-    uint8_t bad[ETHD__FRAME_WIRE];
-    memcpy(bad, wire[1], sizeof bad);
-    flip(bad, a);
-    ck_assert_int_le(decode(bad, sizeof bad), 2);
-    for (int b = 0; b < a; b++, pairs++) {
-      flip(bad, b);
-      ck_assert_int_le(decode(bad, sizeof bad), 2);
-      flip(bad, b);
-    }
-  }
-  printf("ring: %ld lengths, %ld bits, %ld pairs of bits refused\n", lengths, flips, pairs);
-  ck_assert_int_eq(lengths, 44 + 44);
-  ck_assert_int_eq(flips, 352);
-  ck_assert_int_eq(pairs, 352 * 351 / 2);
 }
