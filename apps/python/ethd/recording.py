@@ -12,7 +12,7 @@ from ethd.controller import SPACE_TRACE, TRACE, Controller, Space, SpaceStep, St
 from ethd.errors import Error, check, text
 from ethd.law import Law
 from ethd_programs.files import there
-from ethd_programs.npy import mapped
+from ethd_programs.npy import array_in
 from ethd_programs.recording import RecordedEvent, events
 from ethd_programs.table import table, words
 
@@ -53,14 +53,14 @@ class _Recorded(Generic[_Front, _Result]):
     def __init__(self, folder: str, plugins: bool = False):
         self.folder = folder
         self._plugins = plugins
-        self.tick = mapped(folder, "tick.npy")
+        self.tick = array_in(folder, "tick.npy")
         self.truth = self._array("truth.npy")
         self.taps = table(os.path.join(folder, "taps.csv")) if there(folder, "taps.csv") else None
         self.events = events(folder)
         self.config = ini(os.path.join(folder, "config.ini"))
 
     def _array(self, name: str) -> Optional[NDArray[Any]]:
-        return mapped(self.folder, name) if there(self.folder, name) else None
+        return array_in(self.folder, name) if there(self.folder, name) else None
 
     def _fits(self) -> bool:
         """Whether rows are of this version's columns, or an earlier one's."""

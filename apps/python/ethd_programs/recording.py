@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ethd_programs.cli import Refusal
 from ethd_programs.files import opened, reason, there
-from ethd_programs.npy import mapped
+from ethd_programs.npy import array_in
 from ethd_programs.table import lines
 
 FILES = ("tick.npy", "config.ini", "scene.scene", "events.csv", "truth.npy", "snapshot.npy", "taps.csv")
@@ -107,7 +107,7 @@ class Ticks:
     def __init__(self, folder: str):
         self._folder = folder
         try:
-            self._rows: Any = mapped(folder, "tick.npy")
+            self._rows: Any = array_in(folder, "tick.npy")
         except (FileNotFoundError, NotADirectoryError) as e:
             raise Refusal(f"{folder}: no recording, whose tick.npy is needed: {reason(e)}; ethd-run --record makes one") from None
         self.count, self.fields = self._rows.size, fields_of(self._rows.dtype)

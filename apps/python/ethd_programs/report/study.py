@@ -12,12 +12,11 @@ import sys
 from itertools import islice
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
-import numpy as np
 from numpy.typing import NDArray
 
 from ethd_programs.cli import FAILED, Refusal
 from ethd_programs.files import there
-from ethd_programs.npy import mapped
+from ethd_programs.npy import array_in
 from ethd_programs.table import named, words
 
 Ticks = NDArray[Any]  #: a row a tick, with the columns of a recording
@@ -102,7 +101,7 @@ class Folder:
         folder = next(f for f in self.folders if recording.startswith(os.path.join(f, "")))
         path = os.path.join(recording, file)
         try:
-            rows: Ticks = np.asarray(mapped(folder, *os.path.relpath(path, folder).split(os.sep)))
+            rows: Ticks = array_in(folder, *os.path.relpath(path, folder).split(os.sep), whole=True)
         except OSError as e:
             raise _refusal(e) from None
         except ValueError as e:
