@@ -173,24 +173,6 @@ TEST(test_gone) {
   D.close(d);
 }
 
-/* A counter that was reset: a jump, and another one; the next start takes it as it is. */
-TEST(test_reset_counter) {
-  mock_counter_install();
-  void *d = open_with((const char *const[]){NULL});
-  counter_mock.count[0] = 5000;
-  sample(d, 1, ETHD_OK);
-  counter_mock.count[0] = 0;
-  ethd_sense s = sample(d, 2, ETHD_OK);
-  ck_assert_int_eq(s.faults, ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP));
-  ck_assert_double_eq_tol(s.q[0], 5000 * PER_COUNT, 1e-12);
-  s = sample(d, 3, ETHD_OK);
-  ck_assert_int_eq(s.grave, ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP));
-  ck_assert_int_eq(D.start(d), ETHD_OK);
-  s = sample(d, 4, ETHD_OK);
-  ck_assert(s.faults == 0 && s.q[0] == 0);
-  D.close(d);
-}
-
 /* Without a setting, too: a joint that stands under a changed torque is frozen, but not once the device has let go of the torque. */
 TEST(test_frozen_only_under_torque) {
   int64_t seen[2] = {0, 0};

@@ -215,19 +215,6 @@ TEST(test_pressing_fault) {
   end();
 }
 
-TEST(test_feedback_gets_old) {
-  begin((ethd_vec3){1, 0, 0});
-  b.d.stale_from = 20;
-  b.d.stale_until = 1000;
-  start();
-  for (int i = 0; i < 20; i++) (void)tick();
-  ethd_space_row row = {.armed = 1};
-  int ticks = 0;
-  for (; ethd_loop_take_space(b.loop, &row) != ETHD_OK && ticks < 1000; ticks++) ethd_loop_tick(b.loop);
-  ck_assert(row.trace.sense.faults == ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD) && ticks == 60); /* no gap: 60 ms */
-  end();
-}
-
 TEST(test_failed_read) {
   begin((ethd_vec3){1, 0, 0});
   b.d.fail_read = 10;
@@ -269,16 +256,6 @@ TEST(test_disarm_and_enable) {
   ethd_loop_stop(b.loop);
   ck_assert_int_eq(ethd_loop_join(b.loop), ETHD_OK);
   ck_assert(is_let_go(last_written()));
-  end();
-}
-
-TEST(test_failed_write) {
-  begin((ethd_vec3){1, 0, 0});
-  b.d.fail_write = 7;
-  start();
-  for (int i = 0; i < 8; i++) (void)tick();
-  ck_assert(!ethd_loop_armed(b.loop) && b.d.safes == 1);
-  ck_assert(!tick().armed && is_let_go(last_written()));
   end();
 }
 
