@@ -72,23 +72,6 @@ TEST_LOOP(test_exact_inverse, 0, ARMS) {
   ck_assert_int_gt(seen, POINTS * 9 / 10);
 }
 
-/* The stiffness K_x = J^-T 40 J^-1 in x at absolute link angles 90 and 0 deg. */
-TEST(test_stiffness_of_both_mechanisms) {
-  const double quarter = 1.57079632679489661923;
-  const double expected[2] = {640, 1280};
-  for (int m = 0; m < 2; m++) {
-    ethd_arm arm = {m ? ETHD_ARM_SERIAL : ETHD_ARM_PARALLEL, 0.25, 0.25};
-    double q[2] = {quarter, m ? -quarter : 0};
-    ethd_pose pose;
-    ethd_arm_pose(&arm, q, &pose);
-    ethd_vec e = ethd_mat_mul(pose.j_inv, (ethd_vec){1, 0});
-    ethd_vec k = ethd_mat_mul_transposed(pose.j_inv, ethd_vec_scale(40, e));
-    ck_assert_double_eq_tol(k.x, expected[m], 1e-9);
-    ck_assert_double_eq_tol(pose.x.x, 0.25, 1e-15);
-    ck_assert_double_eq_tol(pose.x.y, 0.25, 1e-15);
-  }
-}
-
 /* J^T (J J^T + lambda^2 I)^-1 written out, with the header's lambda. */
 TEST_LOOP(test_damped_inverse, 0, ARMS) {
   const ethd_arm *arm = &arms[_i];

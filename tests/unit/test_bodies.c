@@ -245,39 +245,6 @@ TEST(test_fine_curve_pushes_once) {
   rig_close(&r);
 }
 
-/* A right angle still pushes twice. */
-TEST(test_corner_pushes_twice) {
-  rig r;
-  rig_begin(&r, "polyline 0.238 0.3 0.238 0.238 0.3 0.238\n", &ethd_transition_smooth);
-  motion m = {{0.249, 0.249}, {0, 0}, {0.249, 0.249}, {0, 0}};
-  rig_step(&r, &m);
-  ck_assert_int_eq(r.trace.contacts, 2);
-  ck_assert(r.trace.fe[0] > 2.4 && r.trace.fe[1] > 2.4);
-  rig_close(&r);
-}
-
-/* A thin wall is never passed unseen: 2 m/s, 2 mm a tick, at any phase. */
-TEST(test_no_tunnelling) {
-  for (int phase = 0; phase < 40; phase++) {
-    rig r;
-    rig_begin(&r, "segment 0.25 0.2 0.25 0.3\n", &ethd_transition_smooth);
-    int pushed = 0;
-    for (int tick = 0; tick < 30; tick++) {
-      double x = 0.28 - 0.00005 * phase - 0.002 * tick;
-      motion m = {{x, 0.25}, {-2, 0}, {x, 0.25}, {-2, 0}};
-      rig_step(&r, &m);
-      double d = x - 0.25 - 0.012;
-      if (d < 0) {
-        ck_assert_double_eq_tol(r.trace.d_re, d, NOISE);
-        ck_assert_double_gt(r.trace.fe[0], 0);
-        pushed = 1;
-      }
-    }
-    ck_assert(pushed);
-    rig_close(&r);
-  }
-}
-
 /* A contact whose law fails at its first tick belongs to its body: nobody looks for it in the scene that isn't
    there, or in one without objects, and the next tick goes on as if the contact began then. */
 TEST_LOOP(test_contact_fails_on_a_body, 0, 2) {

@@ -42,25 +42,6 @@ TEST(test_speed) {
   rig_close(&r);
 }
 
-TEST(test_workspace) {
-  rig r;
-  moody_open(&r, 0);
-  r.setup.limits.workspace[0] = 0.24;
-  rig_post(&r);
-  motion m = rig_at(-0.009, 0.1, 0);
-  ethd_sense s = rig_sense(&r.setup.arm, &m);
-  ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
-  m = rig_at(-0.0101, 0.1, 0);
-  s = rig_sense(&r.setup.arm, &m);
-  ck_assert_int_eq(rig_try(&r, &s), ETHD_E_RANGE);
-  ck_assert(r.trace.fault == ETHD_FAULT_WORKSPACE && r.trace.guard == ETHD_GUARD_WORKSPACE);
-  ck_assert_double_lt(r.command.torque[0], 0); /* against the motion */
-  m = rig_at(-0.009, 0.1, 0);
-  s = rig_sense(&r.setup.arm, &m);
-  ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
-  rig_close(&r);
-}
-
 /* ---- a bus out of step with the ticks ---- */
 
 /* Link 1 of 0.12 kg on a bus whose exchanges take `least` to `most` ms each, one after the other. A sample is of the

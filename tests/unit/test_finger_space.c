@@ -186,19 +186,6 @@ TEST_LOOP(test_loss, 0, 4) {
   ck_assert_uint_eq(s.restarts, (uint32_t)lost + by_stamp);
 }
 
-/* A tracker that jumped for good is followed from the fifth reading on, and acquired again. */
-TEST(test_jump) {
-  ethd_filter f = kalman(ETHD_FILTER_CV, ETHD_COMPENSATION_STAMP, 4);
-  ethd_filter_state s;
-  memset(&s, 0, sizeof s);
-  for (int k = 0; k < 20; k++) {
-    const ethd_filter_reading seen = reading((ethd_vec3){0, 0, k < 15 ? 0 : 1}, LATE);
-    ethd_filter_predict(&f, &s, EVERY * T);
-    ck_assert_int_eq(ethd_filter_update3(&f, &s, &seen), k < 15 || k == 19 ? ETHD_OK : ETHD_STATUS_STALE);
-  }
-  ck_assert(s.gated == 5 && s.restarts == 1 && s.acquired == 1 && s.x[2] == 1);
-}
-
 /* Fixed gains don't ask for noise or velocity. */
 TEST(test_fixed_gains_in_space) {
   static const char *const names[] = {"alpha", "beta", NULL};

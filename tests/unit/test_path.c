@@ -209,30 +209,6 @@ TEST(test_single_sample) {
 
 /* ---- both ---- */
 
-/* Within a piece the acceleration is the slope of the speed, the speed that of the position. */
-static void derivatives_agree(const ethd_path *path, double from, double to) {
-  double h = 1e-6;
-  for (double t = from; t < to; t += 0.0007) {
-    ethd__piece piece;
-    ethd__path_piece(path, t, &piece);
-    ck_assert(piece.begin <= t && t < piece.end);
-    ethd__sim_motion a = ethd__piece_at(&piece, t - h), m = ethd__piece_at(&piece, t),
-                     b = ethd__piece_at(&piece, t + h);
-    ck_assert_double_eq_tol(m.v.x, (b.x.x - a.x.x) / (2 * h), 1e-4);
-    ck_assert_double_eq_tol(m.v.y, (b.x.y - a.x.y) / (2 * h), 1e-4);
-    ck_assert_double_eq_tol(m.a.x, (b.v.x - a.v.x) / (2 * h), 1e-3 + 1e-6 * fabs(m.a.x));
-    ck_assert_double_eq_tol(m.a.y, (b.v.y - a.v.y) / (2 * h), 1e-3 + 1e-6 * fabs(m.a.y));
-  }
-}
-
-TEST(test_derivatives) {
-  ethd_path_sample s[COUNT];
-  ethd_path path = record(s, parabola);
-  derivatives_agree(&reach, -0.01, 0.4);
-  derivatives_agree(&jerk, -0.01, 0.6);
-  derivatives_agree(&path, 0.05, 0.3);
-}
-
 /* A bound, also on a piece without an end, and mostly less than twice what it bounds. */
 TEST(test_travel) {
   int close = 0;

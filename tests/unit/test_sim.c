@@ -69,27 +69,6 @@ TEST_LOOP(test_saturation_and_delay, 0, 9) {
   ethd_sim_destroy(sim);
 }
 
-/* A step of torque between two ticks: v = a1 delay + a2 (T - delay). */
-TEST(test_torque_changes_in_time) {
-  ethd_sim_def def = sim_def();
-  ethd_sim_tap tap = sim_tap();
-  def.plant.friction = def.plant.viscous = 0;
-  def.plant.delay = 0.3e-3;
-  tap.path.speed = 1e-9;
-  ethd_sim *sim = sim_open(&def, &tap);
-  double inertia = 0.25 * 0.0625, v = 0, held = 0;
-  for (uint64_t k = 0; k < 60; k++) {
-    double torque = draw(k, -1, 1), before = sim_sense(sim).q[1];
-    sim_push(sim, 0, torque);
-    double first = held / inertia, second = torque / inertia;
-    double moved = v * 1e-3 + first * 0.5e-6 + (second - first) * 0.49e-6 / 2;
-    ck_assert_double_eq_tol(sim_sense(sim).q[1] - before, moved, 1e-13);
-    v += first * 0.3e-3 + second * 0.7e-3;
-    held = torque;
-  }
-  ethd_sim_destroy(sim);
-}
-
 /* Safe commands and torques that are no numbers drive nothing. */
 TEST(test_safe) {
   ethd_sim_def def = sim_def();
@@ -143,28 +122,6 @@ TEST_LOOP(test_free_finger, 0, 3) {
     ck_assert(t.pad < 0 && t.pad_force == 0);
     follow(sim);
   }
-  ethd_sim_destroy(sim);
-}
-
-/* A ring that is held: the finger runs into it and is stopped a little within, by K p = k d at rest. */
-TEST(test_finger_against_ring) {
-  ethd_sim_def def = sim_def();
-  ethd_sim_tap tap = sim_tap();
-  sim_hold(&def);
-  tap.path.to_x = 0.25;
-  ethd_sim *sim = sim_open(&def, &tap);
-  int touched = 0;
-  for (int k = 0; k < 1500; k++) {
-    ethd_truth t = sim_truth(sim);
-    ck_assert(t.pad_force >= 0 && (t.pad_force == 0 || t.pad > 0));
-    touched += t.pad_force > 0;
-    sim_push(sim, 0, 0);
-  }
-  ethd_truth t = sim_truth(sim);
-  ck_assert_int_gt(touched, 1000);
-  ck_assert_double_eq_tol(t.pad_force, def.plant.pad_stiffness * t.pad, 1e-3);
-  ck_assert_double_eq_tol(def.plant.hand_stiffness * (t.finger[0] - t.hand[0]), t.pad_force, 1e-3);
-  ck_assert_double_gt(t.pad_force, 5);
   ethd_sim_destroy(sim);
 }
 
