@@ -109,6 +109,24 @@ TEST(test_swap_to_an_older_law) {
 
 /* ---- limits ---- */
 
+TEST(test_reach) {
+  rig r;
+  rig_open(&r, NULL);
+  r.setup.limits.reach[0] = 0.3;
+  r.setup.limits.reach[1] = 0.4;
+  r.setup.limits.margin = 0;
+  rig_start(&r);
+  for (int i = 0; i < 3; i++) {
+    const double radius[] = {0.35, 0.29, 0.41};
+    motion m = at(radius[i] * 0.8, radius[i] * 0.6);
+    ethd_sense s = rig_sense(&r.setup.arm, &m);
+    ethd_control_reset(r.control);
+    ethd_status status = rig_try(&r, &s);
+    ck_assert(i ? status < 0 && r.trace.fault == ETHD_FAULT_WORKSPACE : status == ETHD_OK);
+  }
+  rig_close(&r);
+}
+
 /* At the base itself a wall of the reach has no direction to push in. */
 TEST(test_wall_at_the_base) {
   const ethd_pose pose = {{0, 0}, {0.25, 0, 0, 0.25}, {4, 0, 0, 4}};

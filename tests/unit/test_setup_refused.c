@@ -240,6 +240,16 @@ TEST(test_methods_that_are_none) {
   ck_assert(s.filter_p[3] == 0 && s.fit_p[0] == 0 && s.velocity_p[0] == 0);
 }
 
+TEST(test_names_with_a_tail) {
+  ethd_setup s = ethd_setup_default();
+  const char *const names[] = {"limits.reach[1]x", "limits.reach[1", "limits.reach[]", "limits.reach[x]",
+                               "limits.reach[99]"};
+  ck_assert_int_eq(ethd_setup_set(&s, "limits.reach[1]", 0.4, NULL), ETHD_OK);
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    ck_assert_int_eq(ethd_setup_set(&s, names[i], 0.1, &error), ETHD_E_RANGE);
+  ck_assert(s.limits.reach[1] == 0.4);
+}
+
 TEST(test_rows_that_are_none) {
   const ethd_fault none[] = {(ethd_fault)-1, ETHD_FAULT_COUNT};
   for (int i = 0; i < 2; i++) {

@@ -200,6 +200,11 @@ TEST(test_deadline) {
   }
 }
 
+TEST(test_no_speed_to_stop_from) {
+  const device d = {.period = 1e-3, .torque = 1, .v = {INFINITY, 0}};
+  ck_assert(needed(&d) == 0);
+}
+
 /* The least stop_time that is accepted is m v / F of a known mass, at create and post. */
 TEST(test_least_stop_time) {
   seed = 3;
